@@ -1,0 +1,309 @@
+/* cloud/neighbours.c: a balanced k-d tree over float points (Friedman, Bentley and Finkel 1977), split at the median
+ * of the widest axis, leaves of a few points kept contiguous. Exact; ties broken by row. */
+#include "cloud/neighbours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAF_SIZE = 12, MAXIMUM_DEPTH = 64 };
+
+typedef struct tree_node {
+    uint32_t begin, end; /* points of the node, in tree order */
+    uint32_t right;      /* index of the right child; the left one follows its parent; 0 for a leaf */
+    float low[3], high[3];
+} tree_node;
+
+struct plm_index {
+    size_t count;
+    float (*point)[3]; /* in tree order */
+    uint32_t *row;     /* tree order -> caller's row */
+    uint32_t *place;   /* caller's row -> tree order */
+    tree_node *node;
+    size_t node_count;
+};
+
+typedef struct builder {
+    const float (*xyz)[3];
+    uint32_t *row;
+    tree_node *node;
+    size_t node_count;
+} builder;
+
+static bool before(const builder *b, int axis, uint32_t i, uint32_t j)
+{
+    const float x = b->xyz[i][axis], y = b->xyz[j][axis];
+    return x < y || (x == y && i < j);
+}
+
+/* Hoare's selection: after it, row[middle] is in its sorted place along axis. Rows are distinct, so no ties remain. */
+static void select_median(builder *b, int axis, size_t begin, size_t end, size_t middle)
+{
+    uint32_t *row = b->row;
+    size_t low = begin, high = end - 1;
+    while (low < high) {
+        const uint32_t pivot = row[low + (high - low) / 2];
+        size_t i = low, j = high;
+        for (;;) {
+            while (before(b, axis, row[i], pivot)) i++;
+            while (before(b, axis, pivot, row[j])) j--;
+            if (i >= j) break;
+            const uint32_t other = row[i];
+            row[i++] = row[j];
+            row[j--] = other;
+        }
+        if (i == j) { /* both stopped on the pivot itself */
+            if (i == middle) return;
+            if (middle < i)
+                high = i - 1;
+            else
+                low = i + 1;
+        } else if (middle <= j) {
+            high = j;
+        } else {
+            low = i;
+        }
+    }
+}
+
+static uint32_t build_node(builder *b, size_t begin, size_t end)
+{
+    const uint32_t self = (uint32_t)b->node_count++;
+    tree_node *node = &b->node[self];
+    *node = (tree_node){.begin = (uint32_t)begin, .end = (uint32_t)end};
+    for (int axis = 0; axis < 3; axis++) node->low[axis] = INFINITY, node->high[axis] = -INFINITY;
+    for (size_t i = begin; i < end; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const float x = b->xyz[b->row[i]][axis];
+            if (x < node->low[axis]) node->low[axis] = x;
+            if (x > node->high[axis]) node->high[axis] = x;
+        }
+    if (end - begin <= LEAF_SIZE) return self;
+    int axis = 0;
+    for (int i = 1; i < 3; i++)
+        if (node->high[i] - node->low[i] > node->high[axis] - node->low[axis]) axis = i;
+    const size_t middle = begin + (end - begin) / 2;
+    select_median(b, axis, begin, end, middle);
+    build_node(b, begin, middle);
+    node->right = build_node(b, middle, end);
+    return self;
+}
+
+plm_status plm_index_build(const float (*xyz)[3], size_t count, plm_index **out, plm_error *error)
+{
+    if (count >= UINT32_MAX) return plm_fail(error, PLM_E_ARGUMENT, "%zu points are too many for one index", count);
+    plm_index *index = plm_alloc_zero(1, sizeof *index, error);
+    if (!index) return PLM_E_MEMORY;
+    index->count = count;
+    index->point = plm_alloc(count, sizeof *index->point, error);
+    index->row = plm_alloc(count, sizeof *index->row, error);
+    index->place = plm_alloc(count, sizeof *index->place, error);
+    /* A leaf holds at least LEAF_SIZE / 2 points, and there are as many inner nodes as leaves, less one. */
+    index->node = plm_alloc(count / (LEAF_SIZE / 2) * 2 + 3, sizeof *index->node, error);
+    if (!index->point || !index->row || !index->place || !index->node) {
+        plm_index_free(index);
+        return PLM_E_MEMORY;
+    }
+    for (size_t i = 0; i < count; i++) index->row[i] = (uint32_t)i;
+    builder b = {xyz, index->row, index->node, 0};
+    if (count) build_node(&b, 0, count);
+    index->node_count = b.node_count;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(index->point[i], xyz[index->row[i]], sizeof index->point[i]);
+        index->place[index->row[i]] = (uint32_t)i;
+    }
+    *out = index;
+    return PLM_OK;
+}
+
+void plm_index_free(plm_index *index)
+{
+    if (!index) return;
+    plm_free(index->point);
+    plm_free(index->row);
+    plm_free(index->place);
+    plm_free(index->node);
+    plm_free(index);
+}
+
+static float box_distance(const tree_node *node, const float q[3])
+{
+    float sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const float below = node->low[axis] - q[axis], above = q[axis] - node->high[axis];
+        const float d = below > above ? below : above;
+        if (d > 0) sum += d * d;
+    }
+    return sum;
+}
+
+static float point_distance(const float a[3], const float b[3])
+{
+    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+/** The best found so far, sorted by (distance, row). */
+typedef struct best_list {
+    size_t count, room;
+    uint32_t row[1024];
+    float squared[1024];
+} best_list;
+
+static void best_insert(best_list *best, uint32_t row, float squared)
+{
+    size_t i = best->count;
+    if (i == best->room) {
+        const float worst = best->squared[i - 1];
+        if (squared > worst || (squared == worst && row > best->row[i - 1])) return;
+        i--;
+    } else {
+        best->count++;
+    }
+    while (i > 0 && (best->squared[i - 1] > squared || (best->squared[i - 1] == squared && best->row[i - 1] > row))) {
+        best->squared[i] = best->squared[i - 1];
+        best->row[i] = best->row[i - 1];
+        i--;
+    }
+    best->squared[i] = squared;
+    best->row[i] = row;
+}
+
+static void search_nearest(const plm_index *index, const float q[3], uint32_t skip, best_list *best)
+{
+    struct {
+        uint32_t node;
+        float distance;
+    } stack[MAXIMUM_DEPTH];
+    int depth = 0;
+    if (index->node_count) {
+        stack[depth].node = 0;
+        stack[depth++].distance = box_distance(&index->node[0], q);
+    }
+    while (depth) {
+        depth--;
+        if (best->count == best->room && stack[depth].distance > best->squared[best->count - 1]) continue;
+        const uint32_t self = stack[depth].node;
+        const tree_node *node = &index->node[self];
+        if (!node->right) {
+            for (uint32_t i = node->begin; i < node->end; i++)
+                if (index->row[i] != skip) best_insert(best, index->row[i], point_distance(index->point[i], q));
+            continue;
+        }
+        const float left = box_distance(&index->node[self + 1], q);
+        const float right = box_distance(&index->node[node->right], q);
+        const bool left_first = left <= right; /* the nearer child is pushed last, so that it is visited first */
+        stack[depth].node = left_first ? node->right : self + 1;
+        stack[depth++].distance = left_first ? right : left;
+        stack[depth].node = left_first ? self + 1 : node->right;
+        stack[depth++].distance = left_first ? left : right;
+    }
+}
+
+static void best_write(const best_list *best, size_t k, uint32_t *row, float *squared)
+{
+    for (size_t i = 0; i < k; i++) {
+        if (row) row[i] = i < best->count ? best->row[i] : PLM_NO_ROW;
+        if (squared) squared[i] = i < best->count ? best->squared[i] : INFINITY;
+    }
+}
+
+size_t plm_index_nearest(const plm_index *index, const float query[3], size_t k, uint32_t *row, float *squared)
+{
+    best_list best;
+    best.count = 0;
+    best.room = k < 1024 ? k : 1024;
+    if (k) search_nearest(index, query, PLM_NO_ROW, &best);
+    best_write(&best, k, row, squared);
+    return best.count;
+}
+
+plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error)
+{
+    if (k == 0 || k > 1024) return plm_fail(error, PLM_E_ARGUMENT, "%zu neighbours; 1 to 1024 can be asked for", k);
+    const int64_t count = (int64_t)index->count;
+#pragma omp parallel for schedule(dynamic, 1024)
+    for (int64_t i = 0; i < count; i++) {
+        const uint32_t self = index->row[i];
+        best_list best;
+        best.count = 0;
+        best.room = k;
+        search_nearest(index, index->point[i], self, &best);
+        best_write(&best, k, row ? row + self * k : NULL, squared ? squared + self * k : NULL);
+    }
+    return PLM_OK;
+}
+
+typedef struct ball_hit {
+    float squared;
+    uint32_t row;
+} ball_hit;
+
+static bool hit_before(ball_hit a, ball_hit b)
+{
+    return a.squared < b.squared || (a.squared == b.squared && a.row < b.row);
+}
+
+/* Heap sort in place over the two output arrays: no allocation, and the same order for any input order. */
+static void sort_hits(uint32_t *row, float *squared, size_t count)
+{
+    for (size_t phase = count / 2 + count; phase-- > 0;) {
+        size_t root, end;
+        if (phase >= count) { /* building the heap */
+            root = phase - count;
+            end = count;
+        } else { /* taking the largest off */
+            root = 0;
+            end = phase;
+            const ball_hit top = {squared[0], row[0]};
+            squared[0] = squared[end];
+            row[0] = row[end];
+            squared[end] = top.squared;
+            row[end] = top.row;
+        }
+        for (size_t child; (child = 2 * root + 1) < end; root = child) {
+            ball_hit larger = {squared[child], row[child]};
+            if (child + 1 < end) {
+                const ball_hit right = {squared[child + 1], row[child + 1]};
+                if (hit_before(larger, right)) larger = right, child++;
+            }
+            const ball_hit here = {squared[root], row[root]};
+            if (!hit_before(here, larger)) break;
+            squared[root] = larger.squared;
+            row[root] = larger.row;
+            squared[child] = here.squared;
+            row[child] = here.row;
+        }
+    }
+}
+
+size_t plm_index_ball(const plm_index *index, const float query[3], float radius, size_t room, uint32_t *row,
+                      float *squared)
+{
+    const float limit = radius * radius;
+    uint32_t stack[MAXIMUM_DEPTH];
+    int depth = 0;
+    size_t found = 0;
+    if (index->node_count) stack[depth++] = 0;
+    while (depth) {
+        const uint32_t self = stack[--depth];
+        const tree_node *node = &index->node[self];
+        if (box_distance(node, query) > limit) continue;
+        if (node->right) {
+            stack[depth++] = node->right;
+            stack[depth++] = self + 1;
+            continue;
+        }
+        for (uint32_t i = node->begin; i < node->end; i++) {
+            const float d = point_distance(index->point[i], query);
+            if (d > limit) continue;
+            if (found < room) {
+                row[found] = index->row[i];
+                squared[found] = d;
+            }
+            found++;
+        }
+    }
+    sort_hits(row, squared, found < room ? found : room);
+    return found;
+}

@@ -1,0 +1,65 @@
+# plantimeter_module(NAME DEPENDS modules... USES libraries...): one folder of sources as an object library. Sources are
+# globbed (re-checked at each build), so that adding a file is adding a file.
+find_package(OpenMP REQUIRED COMPONENTS C CXX)
+
+set(PLANTIMETER_C_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes
+                           -Wvla -Werror)
+set(PLANTIMETER_CXX_WARNINGS -Wall -Wextra -Werror)
+
+# What every target of the project is compiled with. FMA would change last digits between machines: contraction is off.
+function(plantimeter_compile target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
+  target_compile_definitions(${target} PRIVATE _XOPEN_SOURCE=700 _FILE_OFFSET_BITS=64
+                                               PLM_VERSION="${PROJECT_VERSION}")
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fvisibility=hidden
+                                           $<$<COMPILE_LANGUAGE:C>:${PLANTIMETER_C_WARNINGS}>
+                                           $<$<COMPILE_LANGUAGE:CXX>:${PLANTIMETER_CXX_WARNINGS}>)
+  if(PLANTIMETER_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${PLANTIMETER_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PRIVATE -fsanitize=${PLANTIMETER_SANITIZE})
+  endif()
+endfunction()
+
+function(plantimeter_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;USES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.c ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  if(NOT sources)
+    file(WRITE ${PROJECT_BINARY_DIR}/generated/empty_${name}.c "typedef int plm_${name}_is_empty;\n")
+    set(sources ${PROJECT_BINARY_DIR}/generated/empty_${name}.c)
+  endif()
+  add_library(plm_${name} OBJECT ${sources})
+  plantimeter_compile(plm_${name})
+  target_link_libraries(plm_${name} PUBLIC ${ARG_USES} OpenMP::OpenMP_C OpenMP::OpenMP_CXX)
+  # DEPENDS are the arrows of docs/architecture.md; headers of other modules need no libraries, so nothing is linked.
+  # tests/house checks that the #include lines follow them.
+  set_property(GLOBAL APPEND PROPERTY PLANTIMETER_ARROWS "${name}:${ARG_DEPENDS}")
+endfunction()
+
+# One static and one shared library from the modules. The tests link the static one, so that they reach internals.
+function(plantimeter_libraries)
+  set(objects)
+  foreach(module IN LISTS ARGN)
+    list(APPEND objects $<TARGET_OBJECTS:plm_${module}>)
+  endforeach()
+  add_library(plantimeter_static STATIC ${objects})
+  add_library(plantimeter_shared SHARED ${objects})
+  foreach(target plantimeter_static plantimeter_shared)
+    foreach(module IN LISTS ARGN)
+      get_target_property(libraries plm_${module} LINK_LIBRARIES)
+      target_link_libraries(${target} PRIVATE ${libraries})
+    endforeach()
+    set_target_properties(${target} PROPERTIES OUTPUT_NAME plantimeter LINKER_LANGUAGE CXX)
+    target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  endforeach()
+  set_target_properties(plantimeter_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+endfunction()
+
+function(plantimeter_program folder)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.c)
+  add_executable(plantimeter ${sources})
+  plantimeter_compile(plantimeter)
+  target_link_libraries(plantimeter PRIVATE plantimeter_static OpenMP::OpenMP_C)
+  set_target_properties(plantimeter PROPERTIES LINKER_LANGUAGE CXX RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+endfunction()
