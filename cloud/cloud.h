@@ -16,7 +16,7 @@ extern "C" {
 #endif
 
 #if defined(__GNUC__)
-#define PLM_API __attribute__((visibility("default")))
+#define PLM_API                 __attribute__((visibility("default")))
 #define PLM_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
 #define PLM_API
@@ -104,14 +104,14 @@ PLM_API const char *plm_label_name(plm_label label);
 typedef struct plm_cloud {
     size_t count;
     double origin[3];
-    float (*xyz)[3];     /**< offset from origin, metres once the scale is known, file units before */
-    uint8_t (*rgb)[3];   /**< colour, 0 to 255 */
-    float (*normal)[3];  /**< unit normals as the file gives them; of a splat: its shortest axis */
-    float (*extent)[2];  /**< of a splat: standard deviations along its two long axes, longest first, as xyz's unit */
-    float *opacity;      /**< of a splat: 0 to 1 */
-    uint8_t *label;      /**< plm_label; only where the file was labelled */
-    int32_t *organ;      /**< number of the organ within its class, -1 for none */
-    uint32_t *source;    /**< row of the input file that the point came from (0-based); NULL: row i is point i */
+    float (*xyz)[3];    /**< offset from origin, metres once the scale is known, file units before */
+    uint8_t (*rgb)[3];  /**< colour, 0 to 255 */
+    float (*normal)[3]; /**< unit normals as the file gives them; of a splat: its shortest axis */
+    float (*extent)[2]; /**< of a splat: standard deviations along its two long axes, longest first, as xyz's unit */
+    float *opacity;     /**< of a splat: 0 to 1 */
+    uint8_t *label;     /**< plm_label; only where the file was labelled */
+    int32_t *organ;     /**< number of the organ within its class, -1 for none */
+    uint32_t *source;   /**< row of the input file that the point came from (0-based); NULL: row i is point i */
 } plm_cloud;
 
 /** An attribute to make room for in plm_cloud_create. */

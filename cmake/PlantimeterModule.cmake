@@ -52,7 +52,12 @@ function(plantimeter_libraries)
     set_target_properties(${target} PROPERTIES OUTPUT_NAME plantimeter LINKER_LANGUAGE CXX)
     target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(${target} PRIVATE OpenMP::OpenMP_C)
+    if(PLANTIMETER_SANITIZE)
+      target_link_options(${target} PUBLIC -fsanitize=${PLANTIMETER_SANITIZE})
+    endif()
   endforeach()
+  set_target_properties(plantimeter_static PROPERTIES EXPORT_NAME plantimeter_static)
   set_target_properties(plantimeter_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 endfunction()
 

@@ -32,12 +32,12 @@ typedef struct plm_read_options {
     const char *label_field; /**< read labels from this field; NULL: labels are left unread */
     const char *organ_field; /**< NULL: "organ" where there is one */
     plm_label_scheme label_scheme;
-    int32_t stem_label;    /**< the stem's number under PLM_LABELS_INSTANCES */
-    const char *columns;   /**< text files: names of the columns, comma-separated ("x,y,z,red,green,blue,label"; "-"
+    int32_t stem_label;     /**< the stem's number under PLM_LABELS_INSTANCES */
+    const char *columns;    /**< text files: names of the columns, comma-separated ("x,y,z,red,green,blue,label"; "-"
                                 leaves one out); NULL: header line, else found out from the number of columns */
-    char separator;        /**< text files: ',', ';', '\t', ' '; 0: found out */
+    char separator;         /**< text files: ',', ';', '\t', ' '; 0: found out */
     double minimum_opacity; /**< gaussians below are dropped; 0: 0.005 */
-    int splat_points;      /**< surface points made of one gaussian: 1 (its centre; 0 means 1) or 5 (its centre and the
+    int splat_points;       /**< surface points made of one gaussian: 1 (its centre; 0 means 1) or 5 (its centre and the
                                 ends of its two long axes at one standard deviation) */
 } plm_read_options;
 
@@ -109,8 +109,8 @@ PLM_API plm_status plm_cloud_georeference(plm_cloud *cloud, const plm_crs *crs, 
                                           plm_error *error);
 
 /** Longitude and latitude (degrees) and height (m) of a point of the local frame. */
-PLM_API plm_status plm_georeference_locate(const plm_georeference *reference, const double local[3],
-                                           double *longitude, double *latitude, double *height, plm_error *error);
+PLM_API plm_status plm_georeference_locate(const plm_georeference *reference, const double local[3], double *longitude,
+                                           double *latitude, double *height, plm_error *error);
 
 /** Local east-north-up coordinates to the coordinates of reference->crs (what the file had). */
 PLM_API plm_status plm_georeference_restore(const plm_georeference *reference, const double local[3],

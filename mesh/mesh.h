@@ -19,10 +19,10 @@ PLM_API plm_status plm_mesh_area(const plm_mesh *mesh, double *area, plm_error *
 
 /** Area-weighted best-fit plane of a mesh. */
 typedef struct plm_plane {
-    double centroid[3];  /**< area centroid, offset from the mesh's origin */
-    double normal[3];    /**< unit, smallest eigenvector of the area-weighted second moments */
+    double centroid[3];   /**< area centroid, offset from the mesh's origin */
+    double normal[3];     /**< unit, smallest eigenvector of the area-weighted second moments */
     double eigenvalue[3]; /**< second moments per area along the principal axes, largest first, m2 */
-    double axis[2][3];   /**< unit axes of the two larger eigenvalues */
+    double axis[2][3];    /**< unit axes of the two larger eigenvalues */
 } plm_plane;
 
 /** Fits the plane through the exact second moments of the triangles (not their centroids).
@@ -37,25 +37,25 @@ PLM_API plm_status plm_convex_hull(const float (*xyz)[3], size_t count, double *
                                    plm_error *error);
 
 typedef struct plm_surface_options {
-    double alpha;   /**< radius of the alpha shape's circumcircles, metres; 0: from the spacing, at the area's plateau */
-    double noise;   /**< sigma of the points, metres; < 0: measured */
-    int fused;      /**< points are voxel means: 1 yes, 0 no, -1 found out */
-    double extent;  /**< splats: median larger scale of the gaussians, metres; 0: not a splat */
+    double alpha;  /**< radius of the alpha shape's circumcircles, metres; 0: from the spacing, at the area's plateau */
+    double noise;  /**< sigma of the points, metres; < 0: measured */
+    int fused;     /**< points are voxel means: 1 yes, 0 no, -1 found out */
+    double extent; /**< splats: median larger scale of the gaussians, metres; 0: not a splat */
     uint64_t seed;
 } plm_surface_options;
 
 /** A leaf's surface and what it measures. */
 typedef struct plm_leaf_surface {
-    plm_mesh mesh;            /**< one smooth one-sided surface; its own */
-    double area;              /**< one-sided, rim bias from sampling and noise corrected, m2 */
+    plm_mesh mesh; /**< one smooth one-sided surface; its own */
+    double area;   /**< one-sided, rim bias from sampling and noise corrected, m2 */
     double area_std_error;
-    double area_mesh;         /**< sum of the mesh's triangles, before the rim correction */
-    double boundary_length;   /**< m */
-    double holes_filled;      /**< area of filled holes, m2 */
-    double alpha;             /**< radius used, m */
-    double alpha_sensitivity; /**< d ln A / d ln alpha at alpha */
-    plm_plane plane;          /**< area-weighted best-fit plane */
-    double plane_std_error;   /**< of the normal's direction, radians */
+    double area_mesh;                                    /**< sum of the mesh's triangles, before the rim correction */
+    double boundary_length;                              /**< m */
+    double holes_filled;                                 /**< area of filled holes, m2 */
+    double alpha;                                        /**< radius used, m */
+    double alpha_sensitivity;                            /**< d ln A / d ln alpha at alpha */
+    plm_plane plane;                                     /**< area-weighted best-fit plane */
+    double plane_std_error;                              /**< of the normal's direction, radians */
     double facet_inclination_mean, facet_inclination_sd; /**< area-weighted, radians from zenith (z) */
     double spacing, noise;
     size_t component_count, chart_count;

@@ -14,8 +14,8 @@ extern "C" {
 /** One measured plant of a run, as the tables show it. Strings are the caller's. */
 typedef struct plm_plant_report {
     const char *plant_id;
-    const plm_measurement *measurement; /**< NULL when the plant failed */
-    const char *failure;                /**< why, when it failed */
+    const plm_measurement *measurement;   /**< NULL when the plant failed */
+    const char *failure;                  /**< why, when it failed */
     const plm_georeference *georeference; /**< NULL when there is none */
 } plm_plant_report;
 

@@ -43,10 +43,10 @@ typedef enum plm_ground_mode { PLM_GROUND_AUTO = 0, PLM_GROUND_NONE, PLM_GROUND_
 /** Ground, pot and table. Heights are z in the cloud's frame (origin added). */
 typedef struct plm_ground {
     bool found;
-    double soil_height;   /**< the plane that the plant stands on: soil in the pot, or the table */
+    double soil_height; /**< the plane that the plant stands on: soil in the pot, or the table */
     bool has_pot;
-    double rim_height;    /**< of the pot */
-    double pot_diameter;  /**< outer, at the rim */
+    double rim_height;   /**< of the pot */
+    double pot_diameter; /**< outer, at the rim */
     double pot_centre[2];
     bool has_table;
     double table_height;
@@ -99,17 +99,18 @@ typedef struct plm_segment_options {
 /** Labels and organ numbers of all points of a cloud. */
 typedef struct plm_segmentation {
     size_t count;
-    uint8_t *label;   /**< plm_label */
-    int32_t *organ;   /**< number within its class, 0-based; -1: none. Petiole k carries leaf k. Leaves are numbered along
+    uint8_t *label; /**< plm_label */
+    int32_t *organ; /**< number within its class, 0-based; -1: none. Petiole k carries leaf k. Leaves are numbered along
                            the stem from the base up */
-    int32_t *leaflet; /**< of leaf points of compound leaves: number within the leaf, else -1; NULL when there are none */
+    int32_t
+        *leaflet; /**< of leaf points of compound leaves: number within the leaf, else -1; NULL when there are none */
     size_t stem_count, petiole_count, leaf_count; /**< a petiole that was not seen is absent, so counts may differ */
     uint32_t *leaf_flags;                         /**< leaf_count bit sets of PLM_FLAG_... */
     plm_habit habit;
     double scale;       /**< R, about three stem radii; 0 when the plant has no tubes */
     double stem_radius; /**< good for scales, not for the diameter trait */
     double spacing, noise;
-    char warning[256];  /**< "" or what the user should know */
+    char warning[256]; /**< "" or what the user should know */
 } plm_segmentation;
 
 /** Labels stem, petioles and leaves of a plant, z up. label and keep are as plm_find_ground and plm_clean gave them

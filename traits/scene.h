@@ -11,17 +11,17 @@ struct plm_organ {
     plm_label label;
     int32_t id;
     size_t count;
-    float (*xyz)[3];    /* offsets from the scene's origin, metres, z up */
-    uint32_t *row;      /* rows of scene->cloud */
-    int32_t *leaflet;   /* NULL where there are none */
-    plm_index *index;   /* over xyz; NULL below 12 points */
+    float (*xyz)[3];  /* offsets from the scene's origin, metres, z up */
+    uint32_t *row;    /* rows of scene->cloud */
+    int32_t *leaflet; /* NULL where there are none */
+    plm_index *index; /* over xyz; NULL below 12 points */
     plm_sampling sampling;
     double centroid[3];
-    unsigned flags;     /* from segmentation: PLM_FLAG_... */
+    unsigned flags;           /* from segmentation: PLM_FLAG_... */
     plm_leaf_surface surface; /* leaves; empty where it was not asked for or failed */
     plm_status surface_status;
     char surface_reason[160];
-    struct plm_axis *axis;    /* stems and petioles: the fitted centre line and radius (traits/axis.h); NULL else */
+    struct plm_axis *axis; /* stems and petioles: the fitted centre line and radius (traits/axis.h); NULL else */
     char axis_reason[160];
 };
 

@@ -20,7 +20,14 @@ typedef enum plm_level { PLM_PLANT = 0, PLM_STEM, PLM_PETIOLE, PLM_LEAF, PLM_LEV
 PLM_API const char *plm_level_name(plm_level level);
 
 /** Unit of a report. Values inside are SI; factor turns them into the unit. */
-typedef enum plm_unit { PLM_MILLIMETRE = 0, PLM_SQUARE_CM, PLM_CUBIC_CM, PLM_DEGREE, PLM_NUMBER, PLM_UNIT_COUNT } plm_unit;
+typedef enum plm_unit {
+    PLM_MILLIMETRE = 0,
+    PLM_SQUARE_CM,
+    PLM_CUBIC_CM,
+    PLM_DEGREE,
+    PLM_NUMBER,
+    PLM_UNIT_COUNT
+} plm_unit;
 
 /** "mm", "cm2", "cm3", "deg" or "1". */
 PLM_API const char *plm_unit_name(plm_unit unit);
@@ -30,11 +37,11 @@ PLM_API double plm_unit_factor(plm_unit unit);
 /** Stages that a trait needs; the plan runs no other. */
 enum {
     PLM_NEEDS_ZENITH = 1 << 0,
-    PLM_NEEDS_GROUND = 1 << 1,   /**< ground set apart */
-    PLM_NEEDS_CLEAN = 1 << 2,    /**< floaters dropped */
-    PLM_NEEDS_ORGANS = 1 << 3,   /**< labels: from the file or from segmentation */
-    PLM_NEEDS_SURFACE = 1 << 4,  /**< leaf surfaces */
-    PLM_NEEDS_AXIS = 1 << 5,     /**< fitted axes of stems and petioles */
+    PLM_NEEDS_GROUND = 1 << 1,  /**< ground set apart */
+    PLM_NEEDS_CLEAN = 1 << 2,   /**< floaters dropped */
+    PLM_NEEDS_ORGANS = 1 << 3,  /**< labels: from the file or from segmentation */
+    PLM_NEEDS_SURFACE = 1 << 4, /**< leaf surfaces */
+    PLM_NEEDS_AXIS = 1 << 5,    /**< fitted axes of stems and petioles */
     PLM_NEEDS_HULL = 1 << 6,
     PLM_NEEDS_NEIGHBOURS = 1 << 7, /**< the fused neighbour pass */
     PLM_NEEDS_COLOUR = 1 << 8
@@ -133,13 +140,13 @@ typedef struct plm_trait_value {
 typedef struct plm_measurement {
     size_t value_count;
     plm_trait_value *value;
-    plm_cloud cloud;           /**< the cloud in the plant's frame (z up), all points, with label and organ */
+    plm_cloud cloud; /**< the cloud in the plant's frame (z up), all points, with label and organ */
     plm_segmentation segmentation;
     plm_frame frame;
     plm_ground ground;
     plm_plan plan;
-    plm_mesh leaves;           /**< all leaf surfaces, face_organ is the leaf's number; empty when not asked for */
-    plm_mesh hull;             /**< empty when not asked for */
+    plm_mesh leaves; /**< all leaf surfaces, face_organ is the leaf's number; empty when not asked for */
+    plm_mesh hull;   /**< empty when not asked for */
     size_t warning_count;
     char (*warning)[256];
 } plm_measurement;

@@ -43,8 +43,8 @@ static void table_equals_brute_force_with_ties_to_the_smaller_row(void **unused)
             for (size_t j = 0; j < 9; j++) {
                 uint32_t best = PLM_NO_ROW;
                 for (uint32_t c = 0; c < POINTS; c++)
-                    if (!used[c] && (best == PLM_NO_ROW ||
-                                     squared_distance(xyz[i], xyz[c]) < squared_distance(xyz[i], xyz[best])))
+                    if (!used[c] &&
+                        (best == PLM_NO_ROW || squared_distance(xyz[i], xyz[c]) < squared_distance(xyz[i], xyz[best])))
                         best = c;
                 used[best] = true;
                 assert_int_equal(row[i * 9 + j], best);
