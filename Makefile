@@ -1,20 +1,47 @@
 # Plantimeter: one word a job. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test asan fuzz bench docs format tidy clean
+.PHONY: help packages build demo test asan fuzz docs format tidy clean
 JOBS ?= $(shell nproc)
+# Seconds that each fuzz target runs in `make fuzz`.
+FUZZ_SECONDS ?= 10
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(firstword $(MAKEFILE_LIST))
+	@sed -n 's/^\([a-z]*\):.*## /\1	/p' $(firstword $(MAKEFILE_LIST)) | expand -t 12
 
 packages: ## install the Debian packages that are missing (packages.txt)
 	@sh cmake/install_packages.sh
 
 build: packages ## build the library and the program in build/release
-	@cmake --preset release >/dev/null
+	@cmake --preset release >build.log 2>&1 || { cat build.log; exit 1; }; rm -f build.log
 	@cmake --build build/release -j $(JOBS)
+
+demo: build ## measure the example plants; the results are in demo/
+	@build/release/plantimeter measure examples/data/*.ply -o demo --force
+	@echo "The trait tables are demo/traits.csv and demo/plants.csv; pictures of what was measured are demo/*.png;"
+	@echo "labelled clouds (demo/*.labelled.ply) and leaf meshes (demo/*.leaves.ply) open in CloudCompare or MeshLab."
 
 test: build ## build and run every test
 	@ctest --test-dir build/release --output-on-failure -j $(JOBS)
+
+asan: packages ## run the tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	@cmake --preset asan >/dev/null
+	@cmake --build build/asan -j $(JOBS)
+	@ctest --test-dir build/asan --output-on-failure -j $(JOBS)
+
+fuzz: packages ## run each fuzz target for FUZZ_SECONDS
+	@cmake --preset fuzz >/dev/null
+	@cmake --build build/fuzz -j $(JOBS)
+	@sh tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
+
+docs: build ## build the API reference in build/docs (no warnings allowed) and refresh docs/traits.md
+	@build/release/plantimeter traits --markdown >docs/traits.md
+	@mkdir -p build/docs && doxygen docs/Doxyfile
+
+format: packages ## format every source file
+	@git ls-files '*.c' '*.h' '*.cpp' '*.hpp' | xargs clang-format -i
+
+tidy: packages ## static analysis
+	@sh tests/house/tidy.sh
 
 clean: ## remove what was built
 	rm -rf build demo

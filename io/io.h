@@ -35,7 +35,7 @@ typedef struct plm_read_options {
     int32_t stem_label;     /**< the stem's number under PLM_LABELS_INSTANCES */
     const char *columns;    /**< text files: names of the columns, comma-separated ("x,y,z,red,green,blue,label"; "-"
                                 leaves one out); NULL: header line, else found out from the number of columns */
-    char separator;         /**< text files: ',', ';', '\t', ' '; 0: found out */
+    char separator;         /**< text files: comma, semicolon, tab or blank; 0: found out */
     double minimum_opacity; /**< gaussians below are dropped; 0: 0.005 */
     int splat_points;       /**< surface points made of one gaussian: 1 (its centre; 0 means 1) or 5 (its centre and the
                                 ends of its two long axes at one standard deviation) */
