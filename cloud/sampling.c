@@ -1,0 +1,270 @@
+/* cloud/sampling.c: spacing from nearest neighbours in the tangent plane, noise from local quadrics, and whether points
+ * keep apart as voxel means do. Large inputs are judged on a sample of points that is chosen by their coordinates, so
+ * that the order of rows does not matter. */
+#include "cloud/sampling.h"
+
+#include "cloud/linear.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SPACING_NEIGHBOURS = 8,
+    SAMPLE_SPACING = 6000, /* points that decide spacing and class */
+    SAMPLE_NOISE = 400,    /* quadrics; the median of these is known to about 1 % */
+    QUADRIC_NEIGHBOURS = 24,
+    QUADRIC_MAXIMUM = 250, /* largest neighbourhood of a quadric ... */
+    QUADRIC_USED = 60,     /* ... of which so many strided points are fitted */
+    QUADRIC_TERMS = 6,
+    MINIMUM_POINTS = 12
+};
+
+/* A quadric needs a ball of 5 sigma; below this the heights are cut off (checked on simulated sheets). */
+static const double ball_per_noise = 5.0;
+/* Share of points with r_1 < 0.25 r_8: at most 0.03 in voxel means, at least 0.10 in other clouds. */
+static const double near_ratio = 0.25, fused_share = 0.06;
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float median_of(float *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_floats);
+    return count % 2 ? values[count / 2] : 0.5f * (values[count / 2 - 1] + values[count / 2]);
+}
+
+/* Mean and principal axes of the points named by row. */
+static void principal_axes(const float (*xyz)[3], const uint32_t *row, size_t count, double mean[3], double value[3],
+                           double axis[3][3])
+{
+    double sum[3] = {0, 0, 0};
+    for (size_t j = 0; j < count; j++)
+        for (int i = 0; i < 3; i++) sum[i] += xyz[row[j]][i];
+    for (int i = 0; i < 3; i++) mean[i] = sum[i] / (double)count;
+    double moment[6] = {0};
+    for (size_t j = 0; j < count; j++) {
+        const double d[3] = {xyz[row[j]][0] - mean[0], xyz[row[j]][1] - mean[1], xyz[row[j]][2] - mean[2]};
+        moment[0] += d[0] * d[0];
+        moment[1] += d[0] * d[1];
+        moment[2] += d[0] * d[2];
+        moment[3] += d[1] * d[1];
+        moment[4] += d[1] * d[2];
+        moment[5] += d[2] * d[2];
+    }
+    plm_eigen3(moment, value, axis);
+}
+
+/* 1 / sqrt(density) at self from its nearest neighbours (self left out): r_k is the largest of their distances in the
+ * plane that fits them best, density (k - 0.5) / (pi r_k^2). 0 when all coincide. */
+static float spacing_at(const float (*xyz)[3], uint32_t self, const uint32_t *neighbour, size_t count)
+{
+    uint32_t row[SPACING_NEIGHBOURS + 1];
+    memcpy(row, neighbour, count * sizeof *row);
+    row[count] = self;
+    double mean[3], value[3], axis[3][3];
+    principal_axes(xyz, row, count + 1, mean, value, axis);
+    double largest = 0;
+    for (size_t j = 0; j < count; j++) {
+        double d[3];
+        for (int i = 0; i < 3; i++) d[i] = (double)xyz[neighbour[j]][i] - (double)xyz[self][i];
+        const double height = plm_dot(d, axis[2]);
+        largest = fmax(largest, plm_dot(d, d) - height * height);
+    }
+    return (float)sqrt(PLM_PI * largest / ((double)count - 0.5));
+}
+
+static size_t known_neighbours(const uint32_t *row, size_t room)
+{
+    size_t count = 0;
+    while (count < room && row[count] != PLM_NO_ROW) count++;
+    return count;
+}
+
+plm_status plm_spacing_local(const plm_index *index, const float (*xyz)[3], size_t count, float *spacing,
+                             plm_error *error)
+{
+    enum { K = SPACING_NEIGHBOURS };
+    if (count < 2) return plm_fail(error, PLM_E_DEGENERATE, "%zu points have no spacing; at least 2 are needed", count);
+    plm_status status = PLM_E_MEMORY;
+    uint32_t *row = plm_alloc(count, K * sizeof *row, error);
+    float *raw = plm_alloc(count, sizeof *raw, error);
+    if (row && raw) status = plm_index_table(index, K, row, NULL, error);
+    if (status == PLM_OK) {
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < count; i++)
+            raw[i] = spacing_at(xyz, (uint32_t)i, row + i * K, known_neighbours(row + i * K, K));
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < count; i++) {
+            float near[K + 1];
+            const size_t known = known_neighbours(row + i * K, K);
+            for (size_t j = 0; j < known; j++) near[j] = raw[row[i * K + j]];
+            near[known] = raw[i];
+            spacing[i] = median_of(near, known + 1);
+        }
+    }
+    plm_free(row);
+    plm_free(raw);
+    return status;
+}
+
+/* Mixes the bits of a point's coordinates (the finaliser of MurmurHash3): the order of the sample. */
+static uint64_t hash_point(const float point[3])
+{
+    uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int i = 0; i < 3; i++) {
+        const float value = point[i] + 0.0f; /* -0 becomes 0 */
+        uint32_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
+        hash ^= hash >> 33;
+    }
+    hash *= 0xc4ceb9fe1a85ec53u;
+    return hash ^ (hash >> 33);
+}
+
+/* Rows of about wanted points (all of them where there are no more), chosen by coordinates. row has room for count. */
+static size_t sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row)
+{
+    const uint64_t limit = count <= wanted ? UINT64_MAX : (uint64_t)((double)wanted / (double)count * 0x1p63) << 1;
+    size_t taken = 0;
+    for (size_t i = 0; i < count; i++)
+        if (hash_point(xyz[i]) <= limit) row[taken++] = (uint32_t)i;
+    if (taken >= MINIMUM_POINTS) return taken;
+    /* Only where most points coincide: by row then. */
+    const size_t step = count / wanted + 1;
+    taken = 0;
+    for (size_t i = 0; i < count; i += step) row[taken++] = (uint32_t)i;
+    return taken;
+}
+
+/* Finds the median spacing and the share of points with a neighbour far nearer than the sheet's spacing. */
+static plm_status measure_spacing(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
+                                  double *spacing, double *share, plm_error *error)
+{
+    enum { K = SPACING_NEIGHBOURS };
+    float *local = plm_alloc(count, sizeof *local, error);
+    if (!local) return PLM_E_MEMORY;
+    size_t close = 0;
+#pragma omp parallel for schedule(static) reduction(+ : close)
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row[K + 1];
+        float squared[K + 1];
+        const size_t found = plm_index_nearest(index, xyz[sample[i]], K + 1, row, squared);
+        size_t known = 0;
+        for (size_t j = 0; j < found; j++)
+            if (row[j] != sample[i]) row[known] = row[j], squared[known++] = squared[j];
+        if (known > K) known = K; /* self was not among them: more than K coincident points */
+        local[i] = spacing_at(xyz, sample[i], row, known);
+        size_t first = 0;
+        while (first < known && squared[first] == 0) first++; /* duplicates tell nothing of voxels */
+        if (first < known && sqrt(squared[first]) < near_ratio * sqrt(squared[known - 1])) close++;
+    }
+    *spacing = median_of(local, count);
+    *share = (double)close / (double)count;
+    plm_free(local);
+    return PLM_OK;
+}
+
+/* SD of the points named by row off the quadric that fits them best; n - 6 in the denominator. NAN when the points do
+ * not determine one. */
+static double quadric_residual(const float (*xyz)[3], const uint32_t *row, size_t count)
+{
+    enum { N = QUADRIC_TERMS };
+    double mean[3], value[3], axis[3][3];
+    principal_axes(xyz, row, count, mean, value, axis);
+    const double scale = sqrt(value[0] / (double)count);
+    if (!(scale > 0)) return NAN;
+    double normal[N * N] = {0}, right[N] = {0}, squares = 0;
+    for (size_t j = 0; j < count; j++) {
+        const double d[3] = {xyz[row[j]][0] - mean[0], xyz[row[j]][1] - mean[1], xyz[row[j]][2] - mean[2]};
+        const double u = plm_dot(d, axis[0]) / scale, v = plm_dot(d, axis[1]) / scale, z = plm_dot(d, axis[2]) / scale;
+        const double term[N] = {1, u, v, u * u, u * v, v * v};
+        for (int a = 0; a < N; a++) {
+            for (int b = 0; b <= a; b++) normal[a * N + b] += term[a] * term[b];
+            right[a] += term[a] * z;
+        }
+        squares += z * z;
+    }
+    double solution[N];
+    memcpy(solution, right, sizeof solution);
+    if (!plm_solve_spd(N, normal, solution)) return NAN;
+    for (int a = 0; a < N; a++) squares -= solution[a] * right[a];
+    return scale * sqrt(fmax(squares, 0) / ((double)count - N));
+}
+
+/* Median over the sample of the residual of quadrics through wanted neighbours each, at most QUADRIC_USED of them
+ * fitted; radius: median distance to the last of them. */
+static plm_status measure_residual(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
+                                   size_t wanted, double *residual, double *radius, plm_error *error)
+{
+    float *value = plm_alloc(count, sizeof *value, error);
+    float *reach = plm_alloc(count, sizeof *reach, error);
+    plm_status status = value && reach ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) {
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < count; i++) {
+            uint32_t row[QUADRIC_MAXIMUM];
+            float squared[QUADRIC_MAXIMUM];
+            const size_t found = plm_index_nearest(index, xyz[sample[i]], wanted, row, squared);
+            const size_t step = (found + QUADRIC_USED - 1) / QUADRIC_USED;
+            size_t used = 0;
+            for (size_t j = 0; j < found; j += step) row[used++] = row[j];
+            value[i] = used > QUADRIC_TERMS ? (float)quadric_residual(xyz, row, used) : NAN;
+            reach[i] = sqrtf(squared[found - 1]);
+        }
+        size_t good = 0;
+        for (size_t i = 0; i < count; i++)
+            if (isfinite(value[i])) value[good] = value[i], reach[good++] = reach[i];
+        *residual = good ? median_of(value, good) : 0; /* every neighbourhood on one spot or line: no noise */
+        *radius = good ? median_of(reach, good) : 0;
+    }
+    plm_free(value);
+    plm_free(reach);
+    return status;
+}
+
+/* Noise, the neighbourhood grown until its radius is 5 sigma: where sigma is near the spacing, 24 neighbours are a ball
+ * and their plane is any plane. */
+static plm_status measure_noise(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
+                                size_t total, double *noise, plm_error *error)
+{
+    const size_t most = total < QUADRIC_MAXIMUM ? total : QUADRIC_MAXIMUM;
+    size_t wanted = total < QUADRIC_NEIGHBOURS ? total : QUADRIC_NEIGHBOURS;
+    plm_status status;
+    for (int round = 0;; round++) {
+        double radius;
+        status = measure_residual(index, xyz, sample, count, wanted, noise, &radius, error);
+        if (status != PLM_OK || round == 3 || wanted == most || !(radius > 0) || radius >= ball_per_noise * *noise)
+            break;
+        const double ratio = ball_per_noise * *noise / radius;
+        const double larger = ceil((double)wanted * ratio * ratio);
+        wanted = larger < (double)most ? (size_t)larger : most;
+    }
+    return status;
+}
+
+plm_status plm_sampling_measure(const plm_index *index, const float (*xyz)[3], size_t count, const bool *fused_known,
+                                plm_sampling *sampling, plm_error *error)
+{
+    if (count < MINIMUM_POINTS)
+        return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few to measure spacing and noise; %d are needed",
+                        count, MINIMUM_POINTS);
+    uint32_t *sample = plm_alloc(count, sizeof *sample, error);
+    if (!sample) return PLM_E_MEMORY;
+    plm_sampling found = {0};
+    double share = 0;
+    size_t taken = sample_rows(xyz, count, SAMPLE_SPACING, sample);
+    plm_status status = measure_spacing(index, xyz, sample, taken, &found.spacing, &share, error);
+    if (status == PLM_OK) {
+        found.fused = fused_known ? *fused_known : share < fused_share;
+        taken = sample_rows(xyz, count, SAMPLE_NOISE, sample);
+        status = measure_noise(index, xyz, sample, taken, count, &found.noise, error);
+    }
+    plm_free(sample);
+    if (status == PLM_OK) *sampling = found;
+    return status;
+}
