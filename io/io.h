@@ -24,12 +24,14 @@ typedef enum plm_format {
 /** How the labels of a file are numbered. */
 typedef enum plm_label_scheme {
     PLM_LABELS_CLASSES = 0, /**< plm_label in the label field, organ number within its class in the field `organ` */
-    PLM_LABELS_INSTANCES    /**< one number an organ: stem_label is the stem, every other number a leaf */
+    PLM_LABELS_INSTANCES /**< one number an organ: stem_label is the stem, every other number from 0 on a leaf (numbered
+                              in ascending order), other negative numbers no organ (PLM_LABEL_OTHER) */
 } plm_label_scheme;
 
 /** What the caller knows of a file. All zero is a good default. Strings are the caller's. */
 typedef struct plm_read_options {
-    const char *label_field; /**< read labels from this field; NULL: labels are left unread */
+    const char *label_field; /**< read labels from this field (its name, or its number from 1 on); NULL: labels are left
+                                  unread. CloudCompare's prefix "scalar_" may be there or not */
     const char *organ_field; /**< NULL: "organ" where there is one */
     plm_label_scheme label_scheme;
     int32_t stem_label;     /**< the stem's number under PLM_LABELS_INSTANCES */
@@ -45,8 +47,10 @@ typedef struct plm_read_options {
 typedef struct plm_read_report {
     plm_format format;
     uint64_t rows;                /**< points that the file holds */
-    uint64_t dropped_not_finite;  /**< rows left out for NaN or Inf coordinates */
+    uint64_t dropped_not_finite;  /**< rows left out for coordinates that are NaN, Inf or beyond 1e18, and gaussians
+                                       whose scales or rotation are no numbers */
     uint64_t dropped_transparent; /**< gaussians left out for their opacity */
+    uint64_t dropped_withheld;    /**< LAS points that are marked as deleted */
     char fields[512];             /**< names of the fields, comma-separated, cut where they do not fit */
     char label_field[64];         /**< a field that looks like labels ("label", "class", ...), "" for none */
     char description[64];         /**< "PLY, binary little-endian", "LAS 1.4, point format 6", ... */
@@ -59,7 +63,8 @@ typedef struct plm_read_report {
  * cloud    out, the caller's (plm_cloud_free); coordinates in the file's unit and axes; origin near the points, so
  *          that float offsets keep 1e-7 of the cloud's size. Written only when PLM_OK comes back.
  * report   out, may be NULL.
- * PLM_E_READ, PLM_E_FORMAT (message: file, line or byte, found, expected), PLM_E_MEMORY. */
+ * PLM_E_READ, PLM_E_FORMAT (message: file, line or byte, found, expected), PLM_E_ARGUMENT (a field that options
+ * name is not in the file), PLM_E_MEMORY. */
 PLM_API plm_status plm_cloud_read(const char *path, const plm_read_options *options, plm_cloud *cloud,
                                   plm_read_report *report, plm_error *error);
 
@@ -68,8 +73,8 @@ PLM_API plm_status plm_cloud_parse(const void *data, size_t size, const char *na
                                    plm_cloud *cloud, plm_read_report *report, plm_error *error);
 
 /** Writes a cloud with all its attributes; the format follows from the path's ending: .ply (binary little-endian),
- * .pcd (binary), .xyz .txt (blank-separated, header line behind `#`), .csv. Labels and organs become the fields `label` and
- * `organ`, and a PLY comment says what they mean. Coordinates are origin + offset: float where that loses nothing
+ * .pcd (binary), .xyz .txt (blank-separated, header line behind `#`), .csv. Labels and organs become the fields `label`
+ * and `organ`, and a PLY comment says what they mean. Coordinates are origin + offset: float where that loses nothing
  * beyond 1e-7 of the cloud's size, double else. PLM_E_WRITE, PLM_E_ARGUMENT (unknown ending). */
 PLM_API plm_status plm_cloud_write(const char *path, const plm_cloud *cloud, plm_error *error);
 
