@@ -6,17 +6,19 @@
 #include "cloud/sampling.h"
 #include "traits/traits.h"
 
-/** One organ: its points, copied out so that they lie together, and what was fitted to them. */
+/** One organ: its points, copied out so that they lie together, and what was fitted to them. Points come in the
+ * canonical order of cloud/spatial_order.h, so that an estimator which takes every n-th of them does not depend on the
+ * order of the file's rows. */
 struct plm_organ {
     plm_label label;
     int32_t id;
     size_t count;
-    float (*xyz)[3];  /* offsets from the scene's origin, metres, z up */
-    uint32_t *row;    /* rows of scene->cloud */
-    int32_t *leaflet; /* NULL where there are none */
-    plm_index *index; /* over xyz; NULL below 12 points */
-    plm_sampling sampling;
-    double centroid[3];
+    float (*xyz)[3];          /* offsets from scene->cloud->origin, metres, z up */
+    uint32_t *row;            /* rows of scene->cloud */
+    int32_t *leaflet;         /* NULL where there are none */
+    plm_index *index;         /* over xyz; NULL below 12 points, and where no trait asks for surfaces or axes */
+    plm_sampling sampling;    /* as index: else zero */
+    double centroid[3];       /* offset as xyz */
     unsigned flags;           /* from segmentation: PLM_FLAG_... */
     plm_leaf_surface surface; /* leaves; empty where it was not asked for or failed */
     plm_status surface_status;
@@ -26,19 +28,24 @@ struct plm_organ {
 };
 
 struct plm_scene {
-    const plm_cloud *cloud; /* z up, metres, label and organ set */
+    const plm_cloud *cloud; /* z up, metres, canonical order where an index is built; label and organ set where they
+                               are known */
     const plm_measure_options *options;
     const plm_ground *ground;
     plm_habit habit;
     bool is_splat, has_colour;
-    plm_sampling sampling; /* of the whole plant */
-    size_t plant_count;    /* points of the plant: not ground, not noise */
-    float (*plant)[3];     /* their offsets */
-    uint32_t *plant_row;
+    size_t plant_count;     /* points of the plant: not ground, not noise */
+    float (*plant)[3];      /* their offsets */
+    uint32_t *plant_row;    /* rows of cloud */
+    plm_index *plant_index; /* over plant; NULL below 12 points, and where no trait needs neighbours, organs or hull: a
+                               height alone builds no index and must find its own scales in the bands that it reads */
+    plm_sampling sampling;  /* of the plant, as plant_index: else zero (but extent) */
     size_t organ_count;
     plm_organ *organ; /* stems, then petioles, then leaves, each by number */
     plm_mesh hull;    /* of the plant */
     double hull_volume, hull_area;
+    plm_status hull_status;
+    char hull_reason[160];
 };
 
 /** The organ of a label and number, or NULL. */
@@ -47,5 +54,18 @@ const plm_organ *plm_scene_organ(const plm_scene *scene, plm_label label, int32_
 /** Fills out with a state and a printf-style reason; gives PLM_OK, so that a trait function can return it. */
 plm_status plm_not_applicable(plm_estimate *out, const char *format, ...) PLM_PRINTF(2, 3);
 plm_status plm_trait_failed(plm_estimate *out, const char *format, ...) PLM_PRINTF(2, 3);
+
+/* ---- Building it: one function a stage, called by traits/measure.c ------------------------------------------- */
+
+/** Gathers the plant's points: rows of cloud for which is_plant is true. cloud, options and ground must be set. */
+plm_status plm_scene_gather(plm_scene *scene, const bool *is_plant, plm_error *error);
+
+/** Builds plant_index and measures sampling. */
+plm_status plm_scene_index(plm_scene *scene, plm_error *error);
+
+/** Copies out the organs that the segmentation (of scene->cloud's rows) names. with_index: index and sampling too. */
+plm_status plm_scene_organs(plm_scene *scene, const plm_segmentation *segmentation, bool with_index, plm_error *error);
+
+void plm_scene_free(plm_scene *scene);
 
 #endif

@@ -1,0 +1,273 @@
+/* traits/measure.c: one plant from cloud to values: the stages of the plan, one after the other. Each stage is a function
+ * of the job; what a stage leaves out it tells the plan. */
+#include "cloud/spatial_order.h"
+#include "traits/evaluate.h"
+#include "traits/plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+/** All that the stages share. The measurement is a draft until the end. */
+typedef struct plant_job {
+    const plm_measure_options *options;
+    plm_measurement *draft;
+    bool *chosen;     /* rows of the trait table */
+    bool has_labels;  /* the cloud came with labels */
+    uint32_t *order;  /* work point i is row order[i] of the draft's cloud; NULL: the same order */
+    plm_cloud work;   /* the cloud in canonical order; empty where order is NULL */
+    plm_cloud *cloud; /* what the stages work on: &work or the draft's cloud */
+    uint8_t *label;   /* ground by plm_find_ground: of cloud's points; NULL where labels came with the cloud */
+    bool *keep;       /* by plm_clean; NULL: all */
+    plm_segmentation segmentation; /* of cloud's points; moves to the draft in the caller's order */
+    plm_scene scene;
+} plant_job;
+
+/* A warning that cannot be kept for want of memory is a failure like any other. */
+static plm_status warn(plant_job *job, plm_error *error, const char *format, ...) PLM_PRINTF(3, 4);
+static plm_status warn(plant_job *job, plm_error *error, const char *format, ...)
+{
+    plm_measurement *draft = job->draft;
+    void *grown = plm_realloc(draft->warning, draft->warning_count + 1, sizeof *draft->warning, error);
+    if (!grown) return PLM_E_MEMORY;
+    draft->warning = grown;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(draft->warning[draft->warning_count++], sizeof *draft->warning, format, arguments);
+    va_end(arguments);
+    return PLM_OK;
+}
+
+/* ---- Stages ---------------------------------------------------------------------------------------------------- */
+
+static plm_status run_frame(plant_job *job, plm_error *error)
+{
+    (void)error;
+    plm_frame *frame = &job->draft->frame;
+    *frame = (plm_frame){.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .up = PLM_UP_Z, .evidence = "default"};
+    return PLM_OK;
+}
+
+/* The rows that the trait functions call the plant: by the labels that came with the cloud, else all that is neither
+ * ground nor noise. What segmenting calls other stays in: heights and hulls must not depend on whether leaves were
+ * asked for as well. */
+static plm_status gather_plant(plant_job *job, plm_error *error)
+{
+    const plm_cloud *cloud = job->cloud;
+    bool *is_plant = plm_alloc(cloud->count, sizeof *is_plant, error);
+    if (!is_plant) return PLM_E_MEMORY;
+    for (size_t i = 0; i < cloud->count; i++) {
+        if (job->has_labels)
+            is_plant[i] = cloud->label[i] >= PLM_LABEL_STEM && cloud->label[i] <= PLM_LABEL_LEAF;
+        else
+            is_plant[i] = (!job->label || job->label[i] != PLM_LABEL_GROUND) && (!job->keep || job->keep[i]);
+    }
+    job->scene.cloud = cloud;
+    job->scene.options = job->options;
+    job->scene.ground = &job->draft->ground;
+    const plm_status status = plm_scene_gather(&job->scene, is_plant, error);
+    plm_free(is_plant);
+    return status;
+}
+
+static plm_status run_index(plant_job *job, plm_error *error)
+{
+    return plm_scene_index(&job->scene, error);
+}
+
+/* Labels that came with the cloud, as if they had been found. */
+static plm_status take_labels(plant_job *job, plm_error *error)
+{
+    const plm_cloud *cloud = job->cloud;
+    plm_segmentation *made = &job->segmentation;
+    made->label = plm_alloc(cloud->count, sizeof *made->label, error);
+    made->organ = made->label ? plm_alloc(cloud->count, sizeof *made->organ, error) : NULL;
+    if (!made->organ) return PLM_E_MEMORY;
+    made->count = cloud->count;
+    made->habit = job->options->habit;
+    for (size_t i = 0; i < cloud->count; i++) {
+        made->label[i] = cloud->label[i] < PLM_LABEL_COUNT ? cloud->label[i] : PLM_LABEL_OTHER;
+        made->organ[i] = cloud->organ ? cloud->organ[i] : 0;
+    }
+    if (cloud->organ) return PLM_OK;
+    return warn(job, error,
+                "the labels come without organ numbers (a field \"organ\"): all points of a class count as one organ");
+}
+
+static plm_status run_organs(plant_job *job, plm_error *error)
+{
+    plm_status status = job->has_labels ? take_labels(job, error) : PLM_OK;
+    if (status != PLM_OK || !job->segmentation.label) return status;
+    const bool with_index = job->draft->plan.needs & (PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS);
+    status = plm_scene_organs(&job->scene, &job->segmentation, with_index, error);
+    size_t count[PLM_LABEL_COUNT] = {0};
+    for (size_t i = 0; i < job->scene.organ_count; i++) count[job->scene.organ[i].label]++;
+    job->segmentation.stem_count = count[PLM_LABEL_STEM];
+    job->segmentation.petiole_count = count[PLM_LABEL_PETIOLE];
+    if (job->has_labels) job->segmentation.leaf_count = count[PLM_LABEL_LEAF];
+    return status;
+}
+
+static plm_status run_traits(plant_job *job, plm_error *error)
+{
+    return plm_evaluate(&job->scene, job->chosen, &job->draft->value, &job->draft->value_count, error);
+}
+
+/* ---- Running them ---------------------------------------------------------------------------------------------- */
+
+static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
+    [PLM_STAGE_FRAME] = run_frame,
+    [PLM_STAGE_INDEX] = run_index,
+    [PLM_STAGE_ORGANS] = run_organs,
+    [PLM_STAGE_TRAITS] = run_traits,
+};
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static uint64_t peak_bytes(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
+}
+
+static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
+{
+    plm_stage *stage = &job->draft->plan.stage[id];
+    if (!stage->runs || !run[id]) return PLM_OK;
+    if (job->options->progress) job->options->progress(stage->name, job->options->progress_user);
+    const double begin = seconds_now();
+    const plm_status status = run[id](job, error);
+    stage->seconds = seconds_now() - begin;
+    stage->peak_bytes = peak_bytes();
+    return status;
+}
+
+/* From here on the stages see the points in canonical order, where any of them looks at neighbours. */
+static plm_status put_in_order(plant_job *job, plm_error *error)
+{
+    job->cloud = &job->draft->cloud;
+    if (!job->draft->plan.stage[PLM_STAGE_INDEX].runs) return PLM_OK;
+    const size_t count = job->cloud->count;
+    job->order = plm_alloc(count, sizeof *job->order, error);
+    if (!job->order) return PLM_E_MEMORY;
+    plm_status status = plm_spatial_order((const float(*)[3])job->cloud->xyz, count, job->order, error);
+    if (status == PLM_OK) status = plm_cloud_select(job->cloud, job->order, count, &job->work, error);
+    if (status == PLM_OK) job->cloud = &job->work;
+    return status;
+}
+
+static plm_status run_stages(plant_job *job, plm_error *error)
+{
+    plm_status status = run_stage(job, PLM_STAGE_FRAME, error);
+    if (status == PLM_OK) status = put_in_order(job, error);
+    for (int id = PLM_STAGE_GROUND; id < PLM_STAGE_COUNT && status == PLM_OK; id++) {
+        if (id == PLM_STAGE_INDEX) status = gather_plant(job, error);
+        if (status == PLM_OK) status = run_stage(job, (plm_stage_id)id, error);
+    }
+    return status;
+}
+
+/* ---- The measurement ------------------------------------------------------------------------------------------- */
+
+/* Brings the segmentation into the order of the caller's rows, and its labels into the cloud. */
+static plm_status give_labels(plant_job *job, plm_error *error)
+{
+    plm_segmentation *from = &job->segmentation, *to = &job->draft->segmentation;
+    plm_cloud *cloud = &job->draft->cloud;
+    if (!from->label) return PLM_OK;
+    plm_segmentation made = *from;
+    made.label = plm_alloc(from->count, sizeof *made.label, error);
+    made.organ = made.label ? plm_alloc(from->count, sizeof *made.organ, error) : NULL;
+    made.leaflet = made.organ && from->leaflet ? plm_alloc(from->count, sizeof *made.leaflet, error) : NULL;
+    if (!cloud->label && made.organ) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
+    if (!cloud->organ && made.organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
+    if (!made.organ || (from->leaflet && !made.leaflet) || !cloud->label || !cloud->organ) {
+        plm_free(made.label);
+        plm_free(made.organ);
+        plm_free(made.leaflet);
+        return PLM_E_MEMORY;
+    }
+    for (size_t i = 0; i < from->count; i++) {
+        const size_t row = job->order ? job->order[i] : i;
+        cloud->label[row] = made.label[row] = from->label[i];
+        cloud->organ[row] = made.organ[row] = from->organ[i];
+        if (made.leaflet) made.leaflet[row] = from->leaflet[i];
+    }
+    from->leaf_flags = NULL; /* moved with the struct */
+    *to = made;
+    return PLM_OK;
+}
+
+/* Centroids in the frame of the cloud that was handed in. */
+static void turn_centroids_back(plm_measurement *draft)
+{
+    for (size_t i = 0; i < draft->value_count; i++) {
+        const double *turned = draft->value[i].centroid;
+        double original[3] = {0};
+        for (int axis = 0; axis < 3; axis++)
+            for (int k = 0; k < 3; k++) original[axis] += draft->frame.rotation[k][axis] * turned[k];
+        memcpy(draft->value[i].centroid, original, sizeof original);
+    }
+}
+
+static void free_job(plant_job *job)
+{
+    plm_scene_free(&job->scene);
+    plm_segmentation *segmentation = &job->segmentation;
+    plm_free(segmentation->label);
+    plm_free(segmentation->organ);
+    plm_free(segmentation->leaflet);
+    plm_free(segmentation->leaf_flags);
+    plm_free(job->keep);
+    plm_free(job->label);
+    plm_free(job->order);
+    plm_free(job->chosen);
+    plm_cloud_free(&job->work);
+}
+
+plm_status plm_measure(plm_cloud *cloud, const plm_measure_options *options, plm_measurement *measurement,
+                       plm_error *error)
+{
+    plm_measurement draft = {.cloud = *cloud};
+    plant_job job = {.options = options, .draft = &draft, .has_labels = cloud->label != NULL};
+    *cloud = (plm_cloud){0};
+    size_t trait_count;
+    plm_traits(&trait_count);
+    plm_status status = PLM_OK;
+    if (draft.cloud.count == 0) status = plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points");
+    if (status == PLM_OK) status = plm_plan_make(options, plm_cloud_attributes(&draft.cloud), &draft.plan, error);
+    if (status == PLM_OK && !(job.chosen = plm_alloc(trait_count, sizeof *job.chosen, error))) status = PLM_E_MEMORY;
+    if (status == PLM_OK) status = plm_trait_choose(options->traits, job.chosen, error);
+    if (status == PLM_OK) status = run_stages(&job, error);
+    if (status == PLM_OK) status = give_labels(&job, error);
+    free_job(&job);
+    if (status == PLM_OK) {
+        turn_centroids_back(&draft);
+        *measurement = draft;
+    } else {
+        plm_measurement_free(&draft);
+    }
+    return status;
+}
+
+void plm_measurement_free(plm_measurement *measurement)
+{
+    if (!measurement) return;
+    plm_free(measurement->value);
+    plm_free(measurement->warning);
+    plm_free(measurement->segmentation.label);
+    plm_free(measurement->segmentation.organ);
+    plm_free(measurement->segmentation.leaflet);
+    plm_free(measurement->segmentation.leaf_flags);
+    plm_cloud_free(&measurement->cloud);
+    plm_mesh_free(&measurement->leaves);
+    plm_mesh_free(&measurement->hull);
+    *measurement = (plm_measurement){0};
+}

@@ -1,0 +1,30 @@
+/* traits/plan.h: the stages and who needs them. Internal. */
+#ifndef PLANTIMETER_TRAITS_PLAN_H
+#define PLANTIMETER_TRAITS_PLAN_H
+
+#include "traits/traits.h"
+
+/** The stages, in the order in which they run. */
+typedef enum plm_stage_id {
+    PLM_STAGE_FRAME = 0,
+    PLM_STAGE_GROUND,
+    PLM_STAGE_CLEAN,
+    PLM_STAGE_INDEX,
+    PLM_STAGE_SEGMENT,
+    PLM_STAGE_ORGANS,
+    PLM_STAGE_SURFACES,
+    PLM_STAGE_AXES,
+    PLM_STAGE_HULL,
+    PLM_STAGE_TRAITS,
+    PLM_STAGE_COUNT
+} plm_stage_id;
+
+/** Which rows of the trait table a list asks for: chosen (as long as the table, the caller's) is set or cleared for each.
+ * The list holds names of traits and of levels ("leaf": all traits of leaves), separated by commas; NULL and "all": all.
+ * PLM_E_ARGUMENT  an unknown name (the message names the nearest one), or no name at all. */
+plm_status plm_trait_choose(const char *list, bool *chosen, plm_error *error);
+
+/** Marks a stage as left out, with a printf-style reason. */
+void plm_plan_leave_out(plm_plan *plan, plm_stage_id stage, const char *format, ...) PLM_PRINTF(3, 4);
+
+#endif
