@@ -1,0 +1,22 @@
+/* tool/commands.c: the table of sub-commands, in the order of the help. */
+#include "tool/command.h"
+
+#include <string.h>
+
+static const plm_command *const commands[] = {
+    &plm_command_traits,
+    &plm_command_help,
+};
+
+const plm_command *const *plm_commands(size_t *count)
+{
+    *count = COUNT(commands);
+    return commands;
+}
+
+const plm_command *plm_command_find(const char *name)
+{
+    for (size_t i = 0; i < COUNT(commands); i++)
+        if (!strcmp(commands[i]->name, name)) return commands[i];
+    return NULL;
+}
