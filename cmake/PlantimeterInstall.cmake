@@ -42,3 +42,14 @@ add_custom_target(manual ALL DEPENDS ${PROJECT_BINARY_DIR}/generated/plantimeter
 install(FILES ${PROJECT_BINARY_DIR}/generated/plantimeter.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/generated/completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME plantimeter)
+
+# The manual page and the completion are printed by the program from its own option tables.
+set(manual ${PROJECT_BINARY_DIR}/plantimeter.1)
+set(completion ${PROJECT_BINARY_DIR}/plantimeter.bash)
+add_custom_command(OUTPUT ${manual} ${completion}
+                   COMMAND plantimeter help --man > ${manual}
+                   COMMAND plantimeter help --completion > ${completion}
+                   DEPENDS plantimeter VERBATIM)
+add_custom_target(plantimeter_manual ALL DEPENDS ${manual} ${completion})
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME plantimeter)

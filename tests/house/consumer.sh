@@ -16,3 +16,5 @@ export PKG_CONFIG_PATH
 gcc -std=c17 "$1/tests/consumer/consumer.c" -o "$work/consumer" $(pkg-config --cflags --libs plantimeter) -lm
 LD_LIBRARY_PATH=$(pkg-config --variable=libdir plantimeter) "$work/consumer"
 [ "$(pkg-config --modversion plantimeter)" = "$("$work/prefix/bin/plantimeter" --version | awk '{print $2}')" ]
+grep -q '^.TH' "$work/prefix/share/man/man1/plantimeter.1"
+bash -n "$work/prefix/share/bash-completion/completions/plantimeter"
