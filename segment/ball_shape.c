@@ -1,0 +1,88 @@
+/* segment/ball_shape.c: covariances of graph-connected balls. */
+#include "segment/ball_shape.h"
+
+#include "cloud/linear.h"
+#include "segment/scratch.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static int thread_count(void)
+{
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+static int thread_number(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
+/* Moments about the centre; the walk goes breadth first, queue doubles as the list of members. */
+static void ball(const plm_graph *graph, uint32_t centre, float limit, uint32_t *seen, uint32_t *queue,
+                 plm_ball_shape *shape)
+{
+    const float *middle = graph->xyz[centre];
+    double sum[3] = {0}, moment[6] = {0};
+    size_t count = 0;
+    queue[count++] = centre;
+    seen[centre] = centre + 1; /* stamps: no clearing between balls */
+    for (size_t head = 0; head < count; head++) {
+        const uint32_t here = queue[head];
+        const double x = (double)graph->xyz[here][0] - middle[0], y = (double)graph->xyz[here][1] - middle[1],
+                     z = (double)graph->xyz[here][2] - middle[2];
+        sum[0] += x, sum[1] += y, sum[2] += z;
+        moment[0] += x * x, moment[1] += x * y, moment[2] += x * z;
+        moment[3] += y * y, moment[4] += y * z, moment[5] += z * z;
+        for (uint32_t e = graph->first[here]; e < graph->first[here + 1]; e++) {
+            const uint32_t next = graph->edge[e];
+            if (seen[next] == centre + 1) continue;
+            const float dx = graph->xyz[next][0] - middle[0], dy = graph->xyz[next][1] - middle[1],
+                        dz = graph->xyz[next][2] - middle[2];
+            if (dx * dx + dy * dy + dz * dz > limit) continue;
+            seen[next] = centre + 1;
+            queue[count++] = next;
+        }
+    }
+    const double scale = 1.0 / (double)count;
+    const double m[3] = {sum[0] * scale, sum[1] * scale, sum[2] * scale};
+    const double covariance[6] = {moment[0] * scale - m[0] * m[0], moment[1] * scale - m[0] * m[1],
+                                  moment[2] * scale - m[0] * m[2], moment[3] * scale - m[1] * m[1],
+                                  moment[4] * scale - m[1] * m[2], moment[5] * scale - m[2] * m[2]};
+    double value[3], vector[3][3];
+    plm_eigen3(covariance, value, vector);
+    for (int i = 0; i < 3; i++) {
+        shape->value[i] = (float)(value[i] > 0 ? value[i] : 0);
+        shape->axis[i] = (float)vector[0][i];
+        shape->normal[i] = (float)vector[2][i];
+    }
+    shape->offset = (float)plm_norm(m);
+    shape->count = (uint32_t)count;
+}
+
+plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)
+{
+    plm_scratch scratch = {.error = error};
+    const size_t threads = (size_t)thread_count();
+    uint32_t *seen = plm_scratch_take(&scratch, threads * graph->count, sizeof *seen);
+    uint32_t *queue = plm_scratch_take(&scratch, threads * graph->count, sizeof *queue);
+    if (!scratch.failed) {
+        const float limit = (float)(radius * radius);
+        const int64_t count = (int64_t)graph->count;
+#pragma omp parallel for schedule(dynamic, 256)
+        for (int64_t i = 0; i < count; i++) {
+            const size_t own = (size_t)thread_number() * graph->count;
+            ball(graph, (uint32_t)i, limit, seen + own, queue + own, &shape[i]);
+        }
+    }
+    plm_scratch_free(&scratch, NULL);
+    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}

@@ -1,0 +1,145 @@
+/* segment/scale.c: below three radii tubes look flat, above five or six their neighbours spoil them: the length of what
+ * looks like a tube, over the radius R of the balls that it is judged in, peaks between. */
+#include "segment/scale.h"
+
+#include "cloud/linear.h"
+#include "cloud/neighbours.h"
+#include "segment/ball_shape.h"
+#include "segment/scratch.h"
+#include "segment/thinning.h"
+
+#include <stdlib.h>
+
+static const double SERIES_RATIO = 1.3;
+static const double SMALLEST_SPACINGS = 5, SMALLEST_SIZE = 0.012, LARGEST_SIZE = 0.075;
+static const double BALL_CELLS = 5;        /* voxels in R: a ball on a sheet holds about 100 points */
+static const double TUBE_LINEARITY = 0.45; /* above: long */
+static const double TUBE_ROUNDNESS = 0.6;  /* above: round, not flat */
+static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the peak: folded straps peak later */
+static const double NOISE_RADII = 10;      /* R in sigmas, at least: a noisier ball is round whatever it holds */
+static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
+static const double TUBE_LEAST = 0.15;     /* tubes shorter than this share of the size are none */
+enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float p = *(const float *)a, q = *(const float *)b;
+    return (p > q) - (p < q);
+}
+
+float plm_quantile(float *value, size_t count, double quantile)
+{
+    if (!count) return 0;
+    qsort(value, count, sizeof *value, compare_floats);
+    const double place = quantile * (double)(count - 1);
+    const size_t low = (size_t)place, high = low + 1 < count ? low + 1 : low;
+    return (float)(value[low] + (place - (double)low) * ((double)value[high] - value[low]));
+}
+
+static plm_status robust_size(const float (*xyz)[3], size_t count, double *size, plm_error *error)
+{
+    float *value = plm_alloc(count, sizeof *value, error);
+    if (!value) return PLM_E_MEMORY;
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        for (size_t i = 0; i < count; i++) value[i] = xyz[i][axis];
+        const double low = plm_quantile(value, count, 0.005), high = plm_quantile(value, count, 0.995);
+        sum += (high - low) * (high - low);
+    }
+    *size = sqrt(sum);
+    plm_free(value);
+    return PLM_OK;
+}
+
+static plm_status thinned_spacing(const float (*xyz)[3], size_t count, double *spacing, plm_error *error)
+{
+    double cell;
+    plm_thinned thinned = {0};
+    plm_index *index = NULL;
+    float *squared = NULL;
+    plm_status status = plm_thin_cell(xyz, count, SPACING_POINTS, &cell, error);
+    if (status == PLM_OK) status = plm_thin(xyz, count, cell, &thinned, error);
+    if (status == PLM_OK) status = plm_index_build((const float(*)[3])thinned.xyz, thinned.count, &index, error);
+    if (status == PLM_OK && !(squared = plm_alloc(thinned.count, sizeof *squared, error))) status = PLM_E_MEMORY;
+    if (status == PLM_OK) status = plm_index_table(index, 1, NULL, squared, error);
+    if (status == PLM_OK) *spacing = sqrt(plm_quantile(squared, thinned.count, 0.5));
+    plm_free(squared);
+    plm_index_free(index);
+    plm_thinned_free(&thinned);
+    return status;
+}
+
+/* What one R of the series shows. */
+typedef struct trial {
+    double radius, tube_length, stem_radius;
+    double flat_noise; /* from the points that deviate least from their sheets */
+} trial;
+
+static plm_status try_radius(const float (*xyz)[3], size_t count, double radius, trial *result, plm_error *error)
+{
+    plm_thinned thinned = {0};
+    plm_graph graph = {0};
+    plm_ball_shape *shape = NULL;
+    float *value = NULL;
+    const double cell = radius / BALL_CELLS;
+    plm_status status = plm_thin(xyz, count, cell, &thinned, error);
+    if (status == PLM_OK)
+        status = plm_graph_build((const float(*)[3])thinned.xyz, thinned.count, 10, 2.3 * cell, &graph, error);
+    if (status == PLM_OK) {
+        shape = plm_alloc(thinned.count, sizeof *shape, error);
+        value = plm_alloc(thinned.count, sizeof *value, error);
+        status = shape && value ? plm_ball_shapes(&graph, radius, shape, error) : PLM_E_MEMORY;
+    }
+    if (status == PLM_OK) {
+        double length = 0;
+        size_t tubes = 0;
+        for (size_t i = 0; i < thinned.count; i++) value[i] = shape[i].value[2];
+        const double noise = sqrt(plm_quantile(value, thinned.count, 0.2));
+        for (size_t i = 0; i < thinned.count; i++) {
+            const float *l = shape[i].value;
+            if (!(l[1] > 0) || 1 - sqrt(l[1] / l[0]) <= TUBE_LINEARITY || sqrt(l[2] / l[1]) <= TUBE_ROUNDNESS) continue;
+            const double tube_radius = sqrt((double)l[1] + l[2]); /* a ring has variance r^2 / 2 in each direction */
+            if (tube_radius < TUBE_THICKNESS * radius) continue;
+            length += cell * cell / (2 * PLM_PI * tube_radius);
+            value[tubes++] = (float)tube_radius;
+        }
+        *result = (trial){radius, length, plm_quantile(value, tubes, 0.75), noise};
+    }
+    plm_free(value);
+    plm_free(shape);
+    plm_graph_free(&graph);
+    plm_thinned_free(&thinned);
+    return status;
+}
+
+plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale, plm_error *error)
+{
+    if (count < SMALLEST_COUNT) return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for organs", count);
+    plm_scale out = {0};
+    plm_status status = robust_size(xyz, count, &out.size, error);
+    if (status == PLM_OK && !(out.size > 0)) status = plm_fail(error, PLM_E_DEGENERATE, "all points are in one place");
+    if (status == PLM_OK) status = thinned_spacing(xyz, count, &out.spacing, error);
+    if (status != PLM_OK) return status;
+    trial series[SERIES_MAXIMUM];
+    int trials = 0;
+    double radius = fmax(SMALLEST_SPACINGS * out.spacing, SMALLEST_SIZE * out.size);
+    const double last = fmax(LARGEST_SIZE * out.size, radius);
+    for (; radius <= last && trials < SERIES_MAXIMUM && status == PLM_OK; radius *= SERIES_RATIO)
+        status = try_radius(xyz, count, radius, &series[trials++], error);
+    if (status != PLM_OK) return status;
+    double peak = 0;
+    for (int i = 0; i < trials; i++) peak = fmax(peak, series[i].tube_length);
+    int chosen = 0;
+    while (series[chosen].tube_length < PEAK_SHARE * peak) chosen++;
+    out.noise = series[0].flat_noise;
+    trial best = series[chosen];
+    if (best.radius < NOISE_RADII * out.noise && NOISE_RADII * out.noise < last)
+        status = try_radius(xyz, count, NOISE_RADII * out.noise, &best, error);
+    out.radius = best.radius;
+    out.stem_radius = best.stem_radius;
+    out.tube_length = best.tube_length;
+    out.has_tubes = best.tube_length >= TUBE_LEAST * out.size;
+    out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
+    if (status == PLM_OK) *scale = out;
+    return status;
+}

@@ -1,0 +1,173 @@
+/* segment/segmentation.c: plm_segment: gathers the plant's points, runs the stages on the sketch, carries the labels to
+ * all points. */
+#include "segment/segment.h"
+
+#include "cloud/neighbours.h"
+#include "segment/scratch.h"
+#include "segment/sketch.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double CARRY_SPACINGS = 3; /* a dropped point takes the label of a kept one within so many spacings */
+
+const char *plm_habit_name(plm_habit habit)
+{
+    static const char *const name[] = {"unknown", "simple", "compound",    "strap",
+                                       "rosette", "head",   "single_leaf", "bare_stem"};
+    return (size_t)habit < sizeof name / sizeof *name ? name[habit] : "unknown";
+}
+
+void plm_segmentation_free(plm_segmentation *segmentation)
+{
+    if (!segmentation) return;
+    plm_free(segmentation->label);
+    plm_free(segmentation->organ);
+    plm_free(segmentation->leaflet);
+    plm_free(segmentation->leaf_flags);
+    *segmentation = (plm_segmentation){0};
+}
+
+/* The plant's points: neither ground nor noise. row[i]: where point i came from. Their box's low corner becomes 0, so
+ * that voxels are the same wherever the plant stands; low: that corner. */
+static size_t gather(const plm_cloud *cloud, const uint8_t *label, const bool *keep, float (*xyz)[3], uint32_t *row,
+                     float low[3])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        if ((label && label[i] == PLM_LABEL_GROUND) || (keep && !keep[i])) continue;
+        for (int axis = 0; axis < 3; axis++)
+            if (!count || cloud->xyz[i][axis] < low[axis]) low[axis] = cloud->xyz[i][axis];
+        row[count++] = (uint32_t)i;
+    }
+    for (size_t i = 0; i < count; i++)
+        for (int axis = 0; axis < 3; axis++) xyz[i][axis] = cloud->xyz[row[i]][axis] - low[axis];
+    return count;
+}
+
+static uint8_t class_of(const plm_sketch *sketch, size_t i)
+{
+    if (sketch->is_stem[i]) return PLM_LABEL_STEM;
+    if (sketch->leaf[i] < 0) return sketch->is_tube[i] ? PLM_LABEL_STEM : PLM_LABEL_OTHER;
+    return sketch->is_tube[i] ? PLM_LABEL_PETIOLE : PLM_LABEL_LEAF;
+}
+
+/* Labels of the points that were gathered. */
+static void carry(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_segmentation *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t w = sketch->working.voxels.owner[sketch->base.voxels.owner[i]];
+        const uint8_t label = class_of(sketch, w);
+        out->label[row[i]] = label;
+        out->organ[row[i]] = label == PLM_LABEL_STEM ? 0 : label == PLM_LABEL_OTHER ? -1 : sketch->leaf[w];
+        if (out->leaflet) out->leaflet[row[i]] = label == PLM_LABEL_LEAF ? sketch->leaflet[w] : -1;
+    }
+}
+
+/* Dropped points near kept ones take their labels. */
+static plm_status carry_dropped(const plm_cloud *cloud, const uint8_t *label, const bool *keep, const float (*xyz)[3],
+                                const uint32_t *row, size_t count, const float low[3], plm_segmentation *out,
+                                plm_error *error)
+{
+    if (!keep) return PLM_OK;
+    plm_index *index = NULL;
+    const plm_status status = plm_index_build(xyz, count, &index, error);
+    if (status != PLM_OK) return status;
+    const double limit = CARRY_SPACINGS * out->spacing;
+    const int64_t rows = (int64_t)cloud->count;
+#pragma omp parallel for schedule(dynamic, 256)
+    for (int64_t i = 0; i < rows; i++) {
+        if (keep[i] || (label && label[i] == PLM_LABEL_GROUND)) continue;
+        uint32_t nearest;
+        float squared;
+        const float *p = cloud->xyz[i];
+        const float query[3] = {p[0] - low[0], p[1] - low[1], p[2] - low[2]};
+        plm_index_nearest(index, query, 1, &nearest, &squared);
+        if (squared > limit * limit) continue;
+        out->label[i] = out->label[row[nearest]];
+        out->organ[i] = out->organ[row[nearest]];
+        if (out->leaflet) out->leaflet[i] = out->leaflet[row[nearest]];
+    }
+    plm_index_free(index);
+    return PLM_OK;
+}
+
+static void count_organs(plm_segmentation *out, size_t leaf_count)
+{
+    size_t petioles = 0;
+    out->leaf_count = leaf_count;
+    for (size_t i = 0; i < out->count; i++) {
+        if (out->label[i] == PLM_LABEL_STEM) out->stem_count = 1;
+        if (out->label[i] == PLM_LABEL_PETIOLE && (size_t)out->organ[i] + 1 > petioles)
+            petioles = (size_t)out->organ[i] + 1;
+    }
+    out->petiole_count = petioles;
+}
+
+static plm_status result_start(const plm_cloud *cloud, const uint8_t *label, plm_segmentation *out, plm_error *error)
+{
+    out->count = cloud->count;
+    out->label = plm_alloc(cloud->count, sizeof *out->label, error);
+    out->organ = plm_alloc(cloud->count, sizeof *out->organ, error);
+    if (!out->label || !out->organ) return PLM_E_MEMORY;
+    for (size_t i = 0; i < cloud->count; i++) {
+        out->label[i] = label && label[i] == PLM_LABEL_GROUND ? PLM_LABEL_GROUND : PLM_LABEL_OTHER;
+        out->organ[i] = -1;
+    }
+    return PLM_OK;
+}
+
+static plm_status result_leaflets(plm_segmentation *out, plm_error *error)
+{
+    out->leaflet = plm_alloc(out->count, sizeof *out->leaflet, error);
+    if (!out->leaflet) return PLM_E_MEMORY;
+    for (size_t i = 0; i < out->count; i++) out->leaflet[i] = -1;
+    return PLM_OK;
+}
+
+plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
+                       const plm_segment_options *options, plm_segmentation *result, plm_error *error)
+{
+    static const plm_segment_options defaults = {0};
+    if (!options) options = &defaults;
+    plm_scratch scratch = {.error = error};
+    plm_segmentation out = {0};
+    plm_sketch sketch = {0};
+    float(*xyz)[3] = plm_scratch_take(&scratch, cloud->count, sizeof *xyz);
+    uint32_t *row = plm_scratch_take(&scratch, cloud->count, sizeof *row);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : result_start(cloud, label, &out, error);
+    if (status != PLM_OK) goto done;
+    float low[3] = {0};
+    const size_t count = gather(cloud, label, keep, xyz, row, low);
+    if (!count) {
+        status = plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points of a plant");
+        goto done;
+    }
+    status = plm_sketch_make((const float(*)[3])xyz, count, options->point_budget, &sketch, error);
+    if (status == PLM_OK) status = plm_sketch_tidy(&sketch, error);
+    if (status == PLM_OK) status = plm_sketch_stem(&sketch, error);
+    if (status == PLM_OK) status = plm_sketch_leaves(&sketch, options->habit, error);
+    if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
+    if (status != PLM_OK) goto done;
+    out.habit = sketch.habit;
+    out.scale = sketch.scale.has_tubes ? sketch.scale.radius : 0;
+    out.stem_radius = sketch.scale.stem_radius;
+    out.spacing = sketch.scale.spacing;
+    out.noise = sketch.scale.noise;
+    carry(&sketch, row, count, &out);
+    status = carry_dropped(cloud, label, keep, (const float(*)[3])xyz, row, count, low, &out, error);
+    if (status != PLM_OK) goto done;
+    count_organs(&out, sketch.leaf_count);
+    out.leaf_flags = plm_alloc_zero(out.leaf_count + 1, sizeof *out.leaf_flags, error);
+    if (!out.leaf_flags) {
+        status = PLM_E_MEMORY;
+        goto done;
+    }
+    *result = out;
+    out = (plm_segmentation){0};
+done:
+    plm_segmentation_free(&out);
+    plm_sketch_free(&sketch);
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}

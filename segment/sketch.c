@@ -1,0 +1,100 @@
+/* segment/sketch.c: from all points of a plant to the thinned copy with tube probabilities. */
+#include "segment/sketch.h"
+
+#include "segment/scratch.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DEFAULT_BUDGET = 80000, NEIGHBOURS = 10, SMOOTHING_ROUNDS = 2 };
+static const double WORKING_CELLS = 12; /* in R */
+static const double EDGE_CELLS = 3, JOIN_RADII = 2.5;
+
+/* q = (q + mean of the neighbours) / 2 */
+static plm_status smooth(const plm_graph *graph, float *value, plm_error *error)
+{
+    float *old = plm_alloc(graph->count, sizeof *old, error);
+    if (!old) return PLM_E_MEMORY;
+    for (int round = 0; round < SMOOTHING_ROUNDS; round++) {
+        memcpy(old, value, graph->count * sizeof *old);
+        for (size_t i = 0; i < graph->count; i++) {
+            double sum = 0;
+            for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++) sum += old[graph->edge[e]];
+            const uint32_t degree = graph->first[i + 1] - graph->first[i];
+            if (degree) value[i] = (float)(0.5 * (old[i] + sum / degree));
+        }
+    }
+    plm_free(old);
+    return PLM_OK;
+}
+
+static plm_status take_arrays(plm_sketch *sketch, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    sketch->point = plm_alloc_zero(count, sizeof *sketch->point, error);
+    sketch->tube = plm_alloc_zero(count, sizeof *sketch->tube, error);
+    sketch->is_tube = plm_alloc_zero(count, sizeof *sketch->is_tube, error);
+    sketch->is_stem = plm_alloc_zero(count, sizeof *sketch->is_stem, error);
+    sketch->group = plm_alloc(count, sizeof *sketch->group, error);
+    sketch->leaf = plm_alloc(count, sizeof *sketch->leaf, error);
+    sketch->leaflet = plm_alloc(count, sizeof *sketch->leaflet, error);
+    if (!sketch->point || !sketch->tube || !sketch->is_tube || !sketch->is_stem || !sketch->group || !sketch->leaf ||
+        !sketch->leaflet)
+        return PLM_E_MEMORY;
+    for (size_t i = 0; i < count; i++) sketch->group[i] = sketch->leaf[i] = sketch->leaflet[i] = -1;
+    return PLM_OK;
+}
+
+static plm_status classify(plm_sketch *sketch, plm_error *error)
+{
+    const plm_status status = plm_tube_points((const float(*)[3])sketch->base.xyz, sketch->base.count, &sketch->working,
+                                              &sketch->scale, sketch->point, error);
+    if (status != PLM_OK) return status;
+    for (size_t i = 0; i < sketch->working.count; i++) sketch->tube[i] = plm_tube_probability(&sketch->point[i]);
+    return smooth(&sketch->graph, sketch->tube, error);
+}
+
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_sketch *out, plm_error *error)
+{
+    plm_sketch sketch = {0};
+    double cell;
+    plm_status status = plm_thin_cell(xyz, count, point_budget ? point_budget : DEFAULT_BUDGET, &cell, error);
+    if (status == PLM_OK) status = plm_thin(xyz, count, cell, &sketch.base, error);
+    const float(*base)[3] = (const float(*)[3])sketch.base.xyz;
+    if (status == PLM_OK) status = plm_find_scale(base, sketch.base.count, &sketch.scale, error);
+    if (status == PLM_OK) {
+        cell = fmax(sketch.scale.radius / WORKING_CELLS, sketch.scale.spacing);
+        status = plm_thin(base, sketch.base.count, cell, &sketch.working, error);
+    }
+    if (status == PLM_OK)
+        status = plm_graph_build((const float(*)[3])sketch.working.xyz, sketch.working.count, NEIGHBOURS,
+                                 EDGE_CELLS * cell, &sketch.graph, error);
+    if (status == PLM_OK) status = plm_graph_join(&sketch.graph, cell, JOIN_RADII * sketch.scale.radius, error);
+    if (status == PLM_OK) status = take_arrays(&sketch, error);
+    if (status == PLM_OK && sketch.scale.has_tubes) status = classify(&sketch, error);
+    for (size_t i = 0; status == PLM_OK && i < sketch.working.count; i++) sketch.is_tube[i] = sketch.tube[i] > 0.5f;
+    if (status == PLM_OK)
+        *out = sketch;
+    else
+        plm_sketch_free(&sketch);
+    return status;
+}
+
+void plm_sketch_free(plm_sketch *sketch)
+{
+    plm_thinned_free(&sketch->base);
+    plm_thinned_free(&sketch->working);
+    plm_graph_free(&sketch->graph);
+    plm_free(sketch->point);
+    plm_free(sketch->tube);
+    plm_free(sketch->is_tube);
+    plm_free(sketch->is_stem);
+    plm_free(sketch->stem.node);
+    plm_free(sketch->stem.radius);
+    plm_free(sketch->stem.along);
+    plm_free(sketch->group);
+    plm_free(sketch->leaf);
+    plm_free(sketch->leaflet);
+    plm_free(sketch->leaf_flags);
+    *sketch = (plm_sketch){0};
+}

@@ -1,0 +1,58 @@
+/* segment/sketch.h: the thinned plant on which structure is found, and what the stages found on it. Internal.
+ *
+ * Stages run in the order of their functions here; each reads what the earlier ones wrote. All arrays have
+ * working.count rows, and are the sketch's. */
+#ifndef PLANTIMETER_SEGMENT_SKETCH_H
+#define PLANTIMETER_SEGMENT_SKETCH_H
+
+#include "segment/graph.h"
+#include "segment/scale.h"
+#include "segment/segment.h"
+#include "segment/thinning.h"
+#include "segment/tube_class.h"
+
+/** The centre line of the main stem, from the base up. */
+typedef struct plm_stem_path {
+    size_t count; /**< nodes; 0: there is no stem */
+    double (*node)[3];
+    double *radius; /**< at each node */
+    double *along;  /**< arc length from the base */
+} plm_stem_path;
+
+typedef struct plm_sketch {
+    plm_scale scale;
+    plm_thinned base;    /**< up to the point budget; working is thinned from it */
+    plm_thinned working; /**< one point each max(R / 12, spacing) */
+    plm_graph graph;     /**< over working, in one piece where gaps are below 2.5 R */
+    plm_tube_point *point;
+    float *tube; /**< probability of being tube, smoothed */
+    bool *is_tube;
+    bool *is_stem; /**< is_tube, and on the main stem */
+    plm_stem_path stem;
+    plm_habit habit;
+    int32_t *group;   /**< side group (all that hangs on one foot at the stem), -1: stem */
+    int32_t *leaf;    /**< leaf that a blade or petiole point belongs to, -1 */
+    int32_t *leaflet; /**< component of blade within the leaf, -1 */
+    size_t leaf_count;
+    uint32_t *leaf_flags;
+} plm_sketch;
+
+/** Thins the plant, finds its scale and the graph, and tells tubes from blades. */
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_sketch *sketch,
+                           plm_error *error);
+
+/** Sets classes right that no plant can have: tubes shorter than they are thick, specks of blade on a tube. */
+plm_status plm_sketch_tidy(plm_sketch *sketch, plm_error *error);
+
+/** Finds the main stem's centre line and marks its points. No stem: the path stays empty. */
+plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
+
+/** Finds the leaves: side groups, habit, leaves, leaflets. */
+plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error);
+
+void plm_sketch_free(plm_sketch *sketch);
+
+/** Distance of a point from the stem's centre line; radius and along (may be NULL): of the stem at the nearest place. */
+double plm_stem_distance(const plm_stem_path *stem, const float xyz[3], double *radius, double *along);
+
+#endif

@@ -1,0 +1,315 @@
+/* segment/stem_path.c: the main stem: the cheapest way from the base to the highest thick tube, where thick tubes are
+ * cheap and blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
+#include "cloud/linear.h"
+#include "segment/scratch.h"
+#include "segment/sketch.h"
+
+#include <string.h>
+
+static const double THICK = 0.5; /* of the stem's radius: a tube that may be stem */
+static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
+static const double THIN_END = 0.55;     /* of the lower stem's radius: the stem has become a petiole */
+static const double LOWER_SHARE = 0.6;   /* of the path: where the stem's radius is taken from */
+static const double RISE_LEAST = 0.2;    /* of the size: a plant that rises less has no stem */
+static const double STEP = 0.25;         /* nodes, in R */
+static const double WINDOW = 1;          /* half window of centring and of the radius, in R */
+static const double REACH = 2;           /* points within so many stem radii centre the path */
+static const double MARGIN = 1.5;        /* points within so many radii (plus sigma) are stem */
+static const double MARGIN_BLADE = 1.15; /* the same for points that look like blade */
+enum { CENTRING_ROUNDS = 3 };
+
+/* ---- The path over points ------------------------------------------------------------------------------------- */
+
+static bool is_thick(const plm_sketch *sketch, size_t i)
+{
+    return sketch->is_tube[i] && sketch->point[i].radius > THICK * sketch->scale.stem_radius;
+}
+
+/* Lowest and highest thick tube point of the tube network that is largest, among those that the walk reached. */
+static uint32_t extreme_point(const plm_sketch *sketch, const bool *candidate, bool highest)
+{
+    uint32_t best = UINT32_MAX;
+    for (uint32_t i = 0; i < sketch->working.count; i++) {
+        if (!candidate[i]) continue;
+        const float z = sketch->working.xyz[i][2];
+        if (best == UINT32_MAX || (highest ? z > sketch->working.xyz[best][2] : z < sketch->working.xyz[best][2]))
+            best = i;
+    }
+    return best;
+}
+
+static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, float *distance, uint32_t *parent,
+                            plm_error *error)
+{
+    float *weight = plm_alloc(sketch->working.count, sizeof *weight, error);
+    if (!weight) return PLM_E_MEMORY;
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        const double ratio = sketch->scale.stem_radius / fmax(sketch->point[i].radius, 1e-3 * sketch->scale.radius);
+        weight[i] = (float)(sketch->is_tube[i] ? fmin(fmax(ratio * ratio, COST_LEAST), COST_MOST) : COST_BLADE);
+    }
+    const plm_walk walk = {
+        .source = &base, .source_count = 1, .weight = weight, .distance = distance, .parent = parent};
+    const plm_status status = plm_graph_walk(&sketch->graph, &walk, error);
+    plm_free(weight);
+    return status;
+}
+
+/* Thick tube points of tube components that are longer than thick: specks called tube shall not be the base. */
+static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    int32_t *colour = plm_scratch_take(&scratch, count, sizeof *colour);
+    int32_t *component = plm_scratch_take(&scratch, count, sizeof *component);
+    uint32_t *stack = plm_scratch_take(&scratch, count, sizeof *stack);
+    double *length = plm_scratch_take(&scratch, count, sizeof *length);
+    if (!scratch.failed) {
+        const double cell = sketch->working.cell;
+        for (size_t i = 0; i < count; i++) colour[i] = sketch->is_tube[i] ? 0 : -1;
+        const size_t components = plm_graph_components(&sketch->graph, colour, component, stack);
+        double longest = 0;
+        for (size_t i = 0; i < count; i++) {
+            if (component[i] < 0) continue;
+            double *sum = &length[component[i]];
+            *sum += cell * cell / (2 * PLM_PI * fmax(sketch->point[i].radius, 0.1 * sketch->scale.stem_radius));
+            if (*sum > longest) longest = *sum;
+        }
+        (void)components;
+        for (size_t i = 0; i < count; i++)
+            candidate[i] = component[i] >= 0 && is_thick(sketch, i) && length[component[i]] >= 0.2 * longest;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+/* ---- The centre line ------------------------------------------------------------------------------------------ */
+
+/* Nearest place on the polyline; beyond its ends the distance is to the end. */
+double plm_stem_distance(const plm_stem_path *stem, const float xyz[3], double *radius, double *along)
+{
+    double best = INFINITY;
+    for (size_t k = 0; k + 1 < stem->count; k++) {
+        const double *p = stem->node[k], *q = stem->node[k + 1];
+        const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+        const double w[3] = {xyz[0] - p[0], xyz[1] - p[1], xyz[2] - p[2]};
+        const double length2 = plm_dot(d, d);
+        double t = length2 > 0 ? plm_dot(w, d) / length2 : 0;
+        t = t < 0 ? 0 : t > 1 ? 1 : t;
+        const double r[3] = {w[0] - t * d[0], w[1] - t * d[1], w[2] - t * d[2]};
+        const double here = plm_norm(r);
+        if (here >= best) continue;
+        best = here;
+        if (radius) *radius = stem->radius[k] + t * (stem->radius[k + 1] - stem->radius[k]);
+        if (along) *along = stem->along[k] + t * (stem->along[k + 1] - stem->along[k]);
+    }
+    return best;
+}
+
+static void measure_along(plm_stem_path *stem)
+{
+    stem->along[0] = 0;
+    for (size_t k = 1; k < stem->count; k++) {
+        double d[3];
+        for (int axis = 0; axis < 3; axis++) d[axis] = stem->node[k][axis] - stem->node[k - 1][axis];
+        stem->along[k] = stem->along[k - 1] + plm_norm(d);
+    }
+}
+
+/* Nodes at equal steps along a chain of points given from the base up. */
+static plm_status resample(const plm_sketch *sketch, const uint32_t *chain, size_t length, plm_stem_path *stem,
+                           plm_error *error)
+{
+    const double step = STEP * sketch->scale.radius;
+    double total = 0;
+    for (size_t k = 1; k < length; k++) total += plm_graph_length(&sketch->graph, chain[k - 1], chain[k]);
+    stem->count = (size_t)ceil(total / step) + 1;
+    if (stem->count < 4) stem->count = 4;
+    stem->node = plm_alloc(stem->count, sizeof *stem->node, error);
+    stem->radius = plm_alloc_zero(stem->count, sizeof *stem->radius, error);
+    stem->along = plm_alloc_zero(stem->count, sizeof *stem->along, error);
+    if (!stem->node || !stem->radius || !stem->along) return PLM_E_MEMORY;
+    double at = 0; /* arc length at chain[k] */
+    size_t k = 0;
+    for (size_t n = 0; n < stem->count; n++) {
+        const double wanted = total * (double)n / (double)(stem->count - 1);
+        double piece = 0;
+        while (k + 1 < length && at + (piece = plm_graph_length(&sketch->graph, chain[k], chain[k + 1])) < wanted) {
+            at += piece;
+            k++;
+        }
+        const uint32_t a = chain[k], b = chain[k + 1 < length ? k + 1 : k];
+        const double t = piece > 0 ? fmin((wanted - at) / piece, 1) : 0;
+        for (int axis = 0; axis < 3; axis++)
+            stem->node[n][axis] = sketch->working.xyz[a][axis] +
+                                  t * ((double)sketch->working.xyz[b][axis] - sketch->working.xyz[a][axis]);
+    }
+    measure_along(stem);
+    return PLM_OK;
+}
+
+/* Box-smooths nodes over +-reach nodes; near the ends the window shrinks, so that they stay. */
+static void smooth_nodes(plm_stem_path *stem, size_t reach, double (*buffer)[3])
+{
+    memcpy(buffer, stem->node, stem->count * sizeof *buffer);
+    for (size_t n = 0; n < stem->count; n++) {
+        size_t w = reach;
+        if (n < w) w = n;
+        if (stem->count - 1 - n < w) w = stem->count - 1 - n;
+        for (int axis = 0; axis < 3; axis++) {
+            double sum = 0;
+            for (size_t j = n - w; j <= n + w; j++) sum += buffer[j][axis];
+            stem->node[n][axis] = sum / (double)(2 * w + 1);
+        }
+    }
+}
+
+/* Moves each node to the mean of the tube points around it, across the stem only. */
+static void centre_nodes(const plm_sketch *sketch, plm_stem_path *stem, double reach, double (*sum)[4])
+{
+    memset(sum, 0, stem->count * sizeof *sum);
+    const double window = WINDOW * sketch->scale.radius;
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        if (!sketch->is_tube[i]) continue;
+        double along;
+        if (plm_stem_distance(stem, sketch->working.xyz[i], NULL, &along) > reach) continue;
+        for (size_t n = 0; n < stem->count; n++) {
+            const double w = 1 - fabs(stem->along[n] - along) / window;
+            if (w <= 0) continue;
+            for (int axis = 0; axis < 3; axis++) sum[n][axis] += w * sketch->working.xyz[i][axis];
+            sum[n][3] += w;
+        }
+    }
+    for (size_t n = 0; n < stem->count; n++) {
+        if (!(sum[n][3] > 0)) continue;
+        const size_t a = n ? n - 1 : n, b = n + 1 < stem->count ? n + 1 : n;
+        double tangent[3], shift[3];
+        for (int axis = 0; axis < 3; axis++) {
+            tangent[axis] = stem->node[b][axis] - stem->node[a][axis];
+            shift[axis] = sum[n][axis] / sum[n][3] - stem->node[n][axis];
+        }
+        plm_normalise(tangent);
+        const double forward = plm_dot(shift, tangent);
+        /* stored in place of the sums, since the nodes are still needed for tangents */
+        for (int axis = 0; axis < 3; axis++) sum[n][axis] = stem->node[n][axis] + shift[axis] - forward * tangent[axis];
+    }
+    for (size_t n = 0; n < stem->count; n++)
+        if (sum[n][3] > 0) memcpy(stem->node[n], sum[n], sizeof stem->node[n]);
+}
+
+/* Radius at each node: the median distance of the tube points around it from the line. */
+static plm_status measure_radius(const plm_sketch *sketch, plm_stem_path *stem, double reach, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
+    float *along = plm_scratch_take(&scratch, count, sizeof *along);
+    float *value = plm_scratch_take(&scratch, count, sizeof *value);
+    float *radius = plm_scratch_take(&scratch, stem->count, sizeof *radius);
+    if (!scratch.failed) {
+        size_t near = 0;
+        for (size_t i = 0; i < count; i++) {
+            double at = 0;
+            if (!sketch->is_tube[i]) continue;
+            const double d = plm_stem_distance(stem, sketch->working.xyz[i], NULL, &at);
+            if (d > reach) continue;
+            distance[near] = (float)d;
+            along[near++] = (float)at;
+        }
+        for (size_t n = 0; n < stem->count; n++) {
+            size_t members = 0;
+            for (size_t i = 0; i < near; i++)
+                if (fabs(along[i] - stem->along[n]) < WINDOW * sketch->scale.radius) value[members++] = distance[i];
+            radius[n] = members ? plm_quantile(value, members, 0.5) : (float)sketch->scale.stem_radius;
+        }
+        for (size_t n = 0; n < stem->count; n++) { /* running median of five */
+            size_t members = 0;
+            for (size_t j = n < 2 ? 0 : n - 2; j <= n + 2 && j < stem->count; j++) value[members++] = radius[j];
+            stem->radius[n] = plm_quantile(value, members, 0.5);
+        }
+    }
+    plm_scratch_free(&scratch, NULL);
+    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+/* Cuts the path where the radius has fallen below THIN_END of the lower stem's. */
+static plm_status cut_thin_end(plm_stem_path *stem, plm_error *error)
+{
+    float *value = plm_alloc(stem->count, sizeof *value, error);
+    if (!value) return PLM_E_MEMORY;
+    const size_t lower = (size_t)(LOWER_SHARE * (double)stem->count);
+    for (size_t n = 0; n < lower; n++) value[n] = (float)stem->radius[n];
+    const double least = THIN_END * plm_quantile(value, lower, 0.5);
+    size_t end = lower;
+    while (end < stem->count && stem->radius[end] >= least) end++;
+    stem->count = end;
+    plm_free(value);
+    return PLM_OK;
+}
+
+static plm_status refine(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error)
+{
+    double(*buffer)[4] = plm_alloc(stem->count, sizeof *buffer, error);
+    if (!buffer) return PLM_E_MEMORY;
+    const double reach = REACH * sketch->scale.stem_radius + sketch->scale.noise;
+    for (int round = 0; round < CENTRING_ROUNDS; round++) {
+        smooth_nodes(stem, (size_t)(0.75 / STEP), (double(*)[3])buffer);
+        measure_along(stem);
+        centre_nodes(sketch, stem, reach, buffer);
+        measure_along(stem);
+    }
+    plm_free(buffer);
+    return measure_radius(sketch, stem, reach, error);
+}
+
+static void mark_stem(plm_sketch *sketch)
+{
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        double radius = 0;
+        const double d = plm_stem_distance(&sketch->stem, sketch->working.xyz[i], &radius, NULL);
+        const double margin = sketch->is_tube[i] ? MARGIN : MARGIN_BLADE;
+        sketch->is_stem[i] = d <= margin * radius + sketch->scale.noise;
+        if (sketch->is_stem[i]) sketch->is_tube[i] = true;
+    }
+}
+
+plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    bool *candidate = plm_scratch_take(&scratch, count, sizeof *candidate);
+    float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
+    uint32_t *parent = plm_scratch_take(&scratch, count, sizeof *parent);
+    uint32_t *chain = plm_scratch_take(&scratch, count, sizeof *chain);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    plm_stem_path stem = {0};
+    if (status != PLM_OK || !sketch->scale.has_tubes) goto done;
+    status = find_candidates(sketch, candidate, error);
+    if (status != PLM_OK) goto done;
+    const uint32_t base = extreme_point(sketch, candidate, false);
+    if (base == UINT32_MAX) goto done;
+    status = tube_walk(sketch, base, distance, parent, error);
+    if (status != PLM_OK) goto done;
+    for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(distance[i]);
+    const uint32_t top = extreme_point(sketch, candidate, true);
+    if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) goto done;
+    size_t length = 0;
+    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) chain[length++] = i;
+    for (size_t k = 0; k < length / 2; k++) {
+        const uint32_t other = chain[k];
+        chain[k] = chain[length - 1 - k];
+        chain[length - 1 - k] = other;
+    }
+    status = resample(sketch, chain, length, &stem, error);
+    if (status == PLM_OK) status = refine(sketch, &stem, error);
+    if (status == PLM_OK) status = cut_thin_end(&stem, error);
+    if (status != PLM_OK) goto done;
+    sketch->stem = stem;
+    stem = (plm_stem_path){0};
+    mark_stem(sketch);
+done:
+    plm_free(stem.node);
+    plm_free(stem.radius);
+    plm_free(stem.along);
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* segment/tube_class.h: tube (stem, petiole, rachis) against blade, point by point. Internal. */
+#ifndef PLANTIMETER_SEGMENT_TUBE_CLASS_H
+#define PLANTIMETER_SEGMENT_TUBE_CLASS_H
+
+#include "segment/ball_shape.h"
+#include "segment/scale.h"
+#include "segment/thinning.h"
+
+enum { PLM_TUBE_SCALES = 6, PLM_TUBE_FEATURES = 6 };
+
+/** What is known of the surroundings of one working point. */
+typedef struct plm_tube_point {
+    float feature[PLM_TUBE_SCALES][PLM_TUBE_FEATURES]; /**< linearity, roundness, three sizes, offset, at 0.35 to 2 R */
+    float radius;                                      /**< of the tube that the point would be on, at R */
+    float axis[3];                                     /**< its direction */
+    float normal[3];                                   /**< of the sheet that the point would be on */
+} plm_tube_point;
+
+/** Features of the points of working (thinned from base, which has base_count points): point has working->count rows,
+ * the caller's. Balls at each scale are taken in a copy of base of a sixth of their radius. */
+plm_status plm_tube_points(const float (*base)[3], size_t base_count, const plm_thinned *working,
+                           const plm_scale *scale, plm_tube_point *point, plm_error *error);
+
+/** Probability of being tube, by the logistic formula of segment/tube_weights.h. */
+float plm_tube_probability(const plm_tube_point *point);
+
+#endif
