@@ -7,7 +7,7 @@
 /** How the rows of a file are written. The lines of one file are alike: item i of each line belongs to column i. */
 typedef struct plm_ascii {
     char separator;      /* ' ': runs of blanks and tabs; else that character, with blanks around it */
-    char decimal;        /* '.' or ',' */
+    char decimal;        /* ',' where that may stand in place of a decimal point, else '.' */
     bool has_comments;   /* lines that begin with # or // are no rows */
     const bool *is_list; /* PLY: item i is a count and that many numbers; NULL: none is */
     size_t item_count;   /* items of a line, the same as columns */

@@ -1,4 +1,5 @@
 /* io/cloud_read.c: finding out what a file is, by its content. */
+#include "io/ascii.h"
 #include "io/readers.h"
 
 #include <string.h>
@@ -14,13 +15,66 @@ static bool is_ply(const plm_bytes *bytes)
     return begins_with(bytes, "ply\n") || begins_with(bytes, "ply\r\n");
 }
 
+static bool is_las(const plm_bytes *bytes)
+{
+    return begins_with(bytes, "LASF");
+}
+
+/* Comments, and then a line VERSION or FIELDS. */
+static bool is_pcd(const plm_bytes *bytes)
+{
+    const char *end = (const char *)bytes->data + bytes->size;
+    for (const char *at = (const char *)bytes->data; at < end;) {
+        const plm_line line = plm_line_at(at, end);
+        at = line.next;
+        if (plm_line_is_empty(&line, true)) continue;
+        const plm_bytes rest = {.data = (const unsigned char *)line.begin, .size = (size_t)(line.end - line.begin)};
+        return begins_with(&rest, "VERSION ") || begins_with(&rest, "FIELDS ") || begins_with(&rest, "COLUMNS ");
+    }
+    return false;
+}
+
+/* No control characters near the beginning. */
+static bool is_text(const plm_bytes *bytes)
+{
+    enum { LOOKED_AT = 1024 };
+    for (size_t i = 0; i < bytes->size && i < LOOKED_AT; i++)
+        if (bytes->data[i] < 0x20 && !memchr("\t\n\r\f", bytes->data[i], 4)) return false;
+    return true;
+}
+
 static const struct {
     plm_format format;
     bool (*is_it)(const plm_bytes *bytes);
     plm_reader *read;
 } readers[] = {
     {PLM_FORMAT_PLY, is_ply, plm_ply_read},
+    {PLM_FORMAT_LAS, is_las, plm_las_read},
+    {PLM_FORMAT_PCD, is_pcd, plm_pcd_read},
+    {PLM_FORMAT_TEXT, is_text, plm_text_read},
 };
+
+/* What users try and what they can do about it. */
+static const struct {
+    const char *beginning, *advice;
+} others[] = {
+    {"\x1f\x8b", "is compressed by gzip: unpack it first"},
+    {"PK\x03\x04", "is a zip archive (or a spreadsheet): unpack it, or export it as CSV"},
+    {"\xff\xfe", "is UTF-16 text: save it as UTF-8"},
+    {"\xfe\xff", "is UTF-16 text: save it as UTF-8"},
+    {"ASTM-E57", "is an E57 file: convert it to PLY or LAS"},
+};
+
+static plm_status unknown(const plm_bytes *bytes, plm_error *error)
+{
+    char shown[PLM_SHOWN_LENGTH];
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (begins_with(bytes, others[i].beginning))
+            return plm_fail(error, PLM_E_FORMAT, "%s: byte 0: %s", bytes->name, others[i].advice);
+    return plm_fail(error, PLM_E_FORMAT,
+                    "%s: byte 0: begins with \"%s\"; PLY, PCD, LAS or text with rows of numbers was expected",
+                    bytes->name, plm_show(bytes->data, bytes->size < 8 ? bytes->size : 8, shown));
+}
 
 static plm_status read_bytes(const plm_bytes *bytes, const plm_read_options *options, plm_cloud *cloud,
                              plm_read_report *report, plm_error *error)
@@ -38,9 +92,7 @@ static plm_status read_bytes(const plm_bytes *bytes, const plm_read_options *opt
         if (report) *report = met;
         return PLM_OK;
     }
-    char shown[PLM_SHOWN_LENGTH];
-    return plm_fail(error, PLM_E_FORMAT, "%s: byte 0: begins with \"%s\", a PLY file was expected", bytes->name,
-                    plm_show(bytes->data, bytes->size < 8 ? bytes->size : 8, shown));
+    return unknown(bytes, error);
 }
 
 plm_status plm_cloud_read(const char *path, const plm_read_options *options, plm_cloud *cloud, plm_read_report *report,

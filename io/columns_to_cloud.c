@@ -253,7 +253,7 @@ static void store_labels(const conversion *work, const step_rows *rows, size_t f
 static void convert_step(const conversion *work, size_t first, const step_rows *rows, size_t at)
 {
     plm_cloud cloud = work->cloud;
-    const bool is_splat = work->roles->is_splat, is_plain = !is_splat && is_byte_colour(work->roles);
+    const bool is_splat = work->roles->is_splat, is_plain = cloud.rgb && !is_splat && is_byte_colour(work->roles);
     if (!is_splat) store_places(rows, &cloud, at);
     if (is_plain) store_byte_colours(work->roles, rows, first, &cloud, at);
     if (is_plain) cloud.rgb = NULL; /* done */
@@ -313,7 +313,9 @@ static unsigned attributes_of(const conversion *work, const span_survey *all)
 {
     const plm_column *const *column = work->roles->column;
     unsigned wanted = 0;
-    if (work->roles->is_splat || column[PLM_ROLE_RED] || column[PLM_ROLE_PACKED_COLOUR]) wanted |= PLM_HAS_RGB;
+    /* Point formats of LAS have colours whether the scanner saw any: all black is none. */
+    const bool is_coloured = column[PLM_ROLE_RED] && (is_byte_colour(work->roles) || all->brightest > 0);
+    if (work->roles->is_splat || is_coloured || column[PLM_ROLE_PACKED_COLOUR]) wanted |= PLM_HAS_RGB;
     if (work->roles->is_splat || column[PLM_ROLE_NX]) wanted |= PLM_HAS_NORMAL;
     if (work->roles->is_splat || column[PLM_ROLE_EXTENT_0]) wanted |= PLM_HAS_EXTENT | PLM_HAS_OPACITY;
     if (column[PLM_ROLE_LABEL]) wanted |= PLM_HAS_LABEL;

@@ -75,10 +75,14 @@ PLM_API plm_status plm_cloud_parse(const void *data, size_t size, const char *na
 /** Writes a cloud with all its attributes; the format follows from the path's ending: .ply (binary little-endian),
  * .pcd (binary), .xyz .txt (blank-separated, header line behind `#`), .csv. Labels and organs become the fields `label`
  * and `organ`, and a PLY comment says what they mean. Coordinates are origin + offset: float where that loses nothing
- * beyond 1e-7 of the cloud's size, double else. PLM_E_WRITE, PLM_E_ARGUMENT (unknown ending). */
+ * beyond 1e-7 of the cloud's size, double else. plm_cloud.source is not written: it numbers another file's rows.
+ * PLM_E_WRITE, PLM_E_ARGUMENT (unknown ending). */
 PLM_API plm_status plm_cloud_write(const char *path, const plm_cloud *cloud, plm_error *error);
 
-/** Writes a mesh as .ply, .obj or .stl (binary) through OpenMesh. face_organ becomes face colours in PLY. */
+/** Writes a mesh as .ply (binary), .obj or .stl (binary) through OpenMesh. face_organ becomes the face property `organ` and
+ * face colours in PLY. These files hold float coordinates: origin + vertex, but the vertices relative to mesh->origin
+ * where that sum would lose more than 1e-7 of the mesh's size. PLM_E_WRITE, PLM_E_ARGUMENT (unknown ending, or a triangle
+ * that names a vertex which the mesh lacks), PLM_E_LIBRARY. */
 PLM_API plm_status plm_mesh_write(const char *path, const plm_mesh *mesh, plm_error *error);
 
 /** Opens path + ".part" for writing; plm_output_close renames it to path when all went well (ok true and no write
@@ -109,7 +113,11 @@ typedef struct plm_georeference {
     double longitude, latitude, height; /**< of the local frame's origin: degrees, degrees, metres */
 } plm_georeference;
 
-/** Turns a cloud in crs into metres in a local east-north-up frame at its own middle, in place. By GeographicLib. */
+/** Turns a cloud in crs into metres in a local east-north-up frame at its own middle, in place, by GeographicLib: true
+ * metres, which those of UTM are not (they are 0.9996 to 1.001 of them, and turned by the meridian convergence). Normals
+ * turn with the points. cloud->origin becomes 0.
+ * PLM_E_ARGUMENT when a point's numbers are not of crs, or when longitudes lie on both sides of the date line (they may
+ * go on beyond 180); PLM_E_DEGENERATE for an empty cloud, PLM_E_MEMORY, PLM_E_LIBRARY. The cloud is then unchanged. */
 PLM_API plm_status plm_cloud_georeference(plm_cloud *cloud, const plm_crs *crs, plm_georeference *reference,
                                           plm_error *error);
 

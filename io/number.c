@@ -5,7 +5,6 @@
  * go to strtod under the "C" locale. */
 #include "io/number.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -22,6 +21,20 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
+plm_locale plm_locale_enter(void)
+{
+    plm_locale locale = {.plain = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
+    if (locale.plain) locale.before = uselocale(locale.plain);
+    return locale;
+}
+
+void plm_locale_leave(plm_locale *locale)
+{
+    if (!locale->plain) return;
+    uselocale(locale->before);
+    freelocale(locale->plain);
+}
+
 /* The slow way: a copy that ends in a zero byte, read in the "C" locale. */
 static bool slow(const char *text, const char *end, char decimal, double *value)
 {
@@ -32,13 +45,10 @@ static bool slow(const char *text, const char *end, char decimal, double *value)
     copy[size] = 0;
     char *point = decimal == '.' ? NULL : strchr(copy, decimal);
     if (point) *point = '.';
-    const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!plain) return false;
-    const locale_t before = uselocale(plain);
+    plm_locale locale = plm_locale_enter();
     char *stop;
     *value = strtod(copy, &stop);
-    uselocale(before);
-    freelocale(plain);
+    plm_locale_leave(&locale);
     return *stop == 0;
 }
 
@@ -93,7 +103,7 @@ const char *plm_number_scan(const char *text, const char *end, char decimal, dou
         }
     }
     ptrdiff_t seen = at - first;
-    if (at < end && *at == decimal) {
+    if (at < end && (*at == '.' || *at == decimal)) {
         const char *fraction = ++at;
         for (; at < end && is_digit(*at); at++) {
             if (digits < 19) {

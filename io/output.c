@@ -1,6 +1,7 @@
 /* io/output.c: the seam through which every file is written: beside its place, and then renamed, so that no reader ever
  * meets half a file. */
 #include "io/io.h"
+#include "io/number.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -60,10 +61,12 @@ plm_status plm_output_write(plm_output *output, const void *data, size_t size, p
 
 plm_status plm_output_print(plm_output *output, plm_error *error, const char *format, ...)
 {
+    plm_locale locale = plm_locale_enter(); /* numbers in files have a point, whatever the user's language */
     va_list arguments;
     va_start(arguments, format);
     const int written = vfprintf(output->file, format, arguments);
     va_end(arguments);
+    plm_locale_leave(&locale);
     return written >= 0 ? PLM_OK : broken(output, error);
 }
 

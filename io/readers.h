@@ -10,5 +10,8 @@ typedef plm_status plm_reader(const plm_bytes *bytes, const plm_read_options *op
                               plm_read_report *report, plm_error *error);
 
 plm_reader plm_ply_read;
+plm_reader plm_pcd_read;
+plm_reader plm_las_read;
+plm_reader plm_text_read;
 
 #endif

@@ -13,7 +13,7 @@ static const char *type_name(plm_scalar type)
 
 plm_status plm_ply_write(const plm_cloud *cloud, plm_output *output, plm_error *error)
 {
-    const plm_out_layout layout = plm_out_layout_of(cloud);
+    const plm_out_layout layout = plm_out_layout_of(cloud, false);
     plm_status status =
         plm_output_print(output, error, "ply\nformat binary_%s_endian 1.0\n", plm_host_is_little() ? "little" : "big");
     if (status == PLM_OK && cloud->label)
@@ -26,10 +26,5 @@ plm_status plm_ply_write(const plm_cloud *cloud, plm_output *output, plm_error *
         status =
             plm_output_print(output, error, "property %s %s\n", type_name(layout.field[i].type), layout.field[i].name);
     if (status == PLM_OK) status = plm_output_print(output, error, "end_header\n");
-    for (size_t i = 0; status == PLM_OK && i < cloud->count; i++) {
-        unsigned char row[PLM_OUT_ROW];
-        plm_out_pack(&layout, cloud, i, row);
-        status = plm_output_write(output, row, layout.row_size, error);
-    }
-    return status;
+    return status == PLM_OK ? plm_out_rows(&layout, cloud, output, error) : status;
 }
