@@ -2,23 +2,30 @@
  * of the widest axis, leaves of a few points kept contiguous. Exact; ties broken by row. */
 #include "cloud/neighbours.h"
 
+#include "cloud/all_nearest.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAF_SIZE = 12, MAXIMUM_DEPTH = 64 };
+enum {
+    LEAF_SIZE = 12,
+    MAXIMUM_DEPTH = 64,
+    FEW_HITS = 40 /* sorted faster by insertion */
+};
 
 typedef struct tree_node {
     uint32_t begin, end; /* points of the node, in tree order */
     uint32_t right;      /* index of the right child; the left one follows its parent; 0 for a leaf */
+    uint32_t least_row;  /* of its points: of many at one place, only the first rows are worth a visit */
     float low[3], high[3];
 } tree_node;
 
 struct plm_index {
     size_t count;
-    float (*point)[3]; /* in tree order */
-    uint32_t *row;     /* tree order -> caller's row */
-    uint32_t *place;   /* caller's row -> tree order */
+    const float (*xyz)[3]; /* the caller's */
+    float (*point)[3];     /* in tree order */
+    uint32_t *row;         /* tree order -> caller's row */
     tree_node *node;
     size_t node_count;
 };
@@ -70,14 +77,16 @@ static uint32_t build_node(builder *b, size_t begin, size_t end)
 {
     const uint32_t self = (uint32_t)b->node_count++;
     tree_node *node = &b->node[self];
-    *node = (tree_node){.begin = (uint32_t)begin, .end = (uint32_t)end};
+    *node = (tree_node){.begin = (uint32_t)begin, .end = (uint32_t)end, .least_row = PLM_NO_ROW};
     for (int axis = 0; axis < 3; axis++) node->low[axis] = INFINITY, node->high[axis] = -INFINITY;
-    for (size_t i = begin; i < end; i++)
+    for (size_t i = begin; i < end; i++) {
+        if (b->row[i] < node->least_row) node->least_row = b->row[i];
         for (int axis = 0; axis < 3; axis++) {
             const float x = b->xyz[b->row[i]][axis];
             if (x < node->low[axis]) node->low[axis] = x;
             if (x > node->high[axis]) node->high[axis] = x;
         }
+    }
     if (end - begin <= LEAF_SIZE) return self;
     int axis = 0;
     for (int i = 1; i < 3; i++)
@@ -95,12 +104,12 @@ plm_status plm_index_build(const float (*xyz)[3], size_t count, plm_index **out,
     plm_index *index = plm_alloc_zero(1, sizeof *index, error);
     if (!index) return PLM_E_MEMORY;
     index->count = count;
+    index->xyz = xyz;
     index->point = plm_alloc(count, sizeof *index->point, error);
     index->row = plm_alloc(count, sizeof *index->row, error);
-    index->place = plm_alloc(count, sizeof *index->place, error);
     /* A leaf holds at least LEAF_SIZE / 2 points, and there are as many inner nodes as leaves, less one. */
     index->node = plm_alloc(count / (LEAF_SIZE / 2) * 2 + 3, sizeof *index->node, error);
-    if (!index->point || !index->row || !index->place || !index->node) {
+    if (!index->point || !index->row || !index->node) {
         plm_index_free(index);
         return PLM_E_MEMORY;
     }
@@ -110,7 +119,6 @@ plm_status plm_index_build(const float (*xyz)[3], size_t count, plm_index **out,
     index->node_count = b.node_count;
     for (size_t i = 0; i < count; i++) {
         memcpy(index->point[i], xyz[index->row[i]], sizeof index->point[i]);
-        index->place[index->row[i]] = (uint32_t)i;
     }
     *out = index;
     return PLM_OK;
@@ -121,7 +129,6 @@ void plm_index_free(plm_index *index)
     if (!index) return;
     plm_free(index->point);
     plm_free(index->row);
-    plm_free(index->place);
     plm_free(index->node);
     plm_free(index);
 }
@@ -146,8 +153,8 @@ static float point_distance(const float a[3], const float b[3])
 /** The best found so far, sorted by (distance, row). */
 typedef struct best_list {
     size_t count, room;
-    uint32_t row[1024];
-    float squared[1024];
+    uint32_t row[PLM_MOST_NEIGHBOURS];
+    float squared[PLM_MOST_NEIGHBOURS];
 } best_list;
 
 static void best_insert(best_list *best, uint32_t row, float squared)
@@ -182,9 +189,13 @@ static void search_nearest(const plm_index *index, const float q[3], uint32_t sk
     }
     while (depth) {
         depth--;
-        if (best->count == best->room && stack[depth].distance > best->squared[best->count - 1]) continue;
         const uint32_t self = stack[depth].node;
         const tree_node *node = &index->node[self];
+        if (best->count == best->room) {
+            const float farthest = best->squared[best->count - 1];
+            if (stack[depth].distance > farthest) continue;
+            if (stack[depth].distance == farthest && node->least_row > best->row[best->count - 1]) continue;
+        }
         if (!node->right) {
             for (uint32_t i = node->begin; i < node->end; i++)
                 if (index->row[i] != skip) best_insert(best, index->row[i], point_distance(index->point[i], q));
@@ -208,44 +219,49 @@ static void best_write(const best_list *best, size_t k, uint32_t *row, float *sq
     }
 }
 
-size_t plm_index_nearest(const plm_index *index, const float query[3], size_t k, uint32_t *row, float *squared)
+static size_t ask(const plm_index *index, const float query[3], uint32_t skip, size_t k, uint32_t *row, float *squared)
 {
     best_list best;
     best.count = 0;
-    best.room = k < 1024 ? k : 1024;
-    if (k) search_nearest(index, query, PLM_NO_ROW, &best);
+    best.room = k < PLM_MOST_NEIGHBOURS ? k : PLM_MOST_NEIGHBOURS;
+    if (k) search_nearest(index, query, skip, &best);
     best_write(&best, k, row, squared);
     return best.count;
 }
 
-plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error)
+size_t plm_index_nearest(const plm_index *index, const float query[3], size_t k, uint32_t *row, float *squared)
 {
-    if (k == 0 || k > 1024) return plm_fail(error, PLM_E_ARGUMENT, "%zu neighbours; 1 to 1024 can be asked for", k);
-    const int64_t count = (int64_t)index->count;
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (int64_t i = 0; i < count; i++) {
-        const uint32_t self = index->row[i];
-        best_list best;
-        best.count = 0;
-        best.room = k;
-        search_nearest(index, index->point[i], self, &best);
-        best_write(&best, k, row ? row + self * k : NULL, squared ? squared + self * k : NULL);
-    }
-    return PLM_OK;
+    return ask(index, query, PLM_NO_ROW, k, row, squared);
 }
 
-typedef struct ball_hit {
+size_t plm_index_neighbours(const plm_index *index, uint32_t point, size_t k, uint32_t *row, float *squared)
+{
+    return ask(index, index->xyz[point], point, k, row, squared);
+}
+
+typedef struct hit {
     float squared;
     uint32_t row;
-} ball_hit;
+} hit;
 
-static bool hit_before(ball_hit a, ball_hit b)
+static bool hit_before(hit a, hit b)
 {
     return a.squared < b.squared || (a.squared == b.squared && a.row < b.row);
 }
 
-/* Heap sort in place over the two output arrays: no allocation, and the same order for any input order. */
-static void sort_hits(uint32_t *row, float *squared, size_t count)
+/* In place over two arrays, by distance, then row: no allocation, and the same order for any input order. */
+static void insertion_sort(uint32_t *row, float *squared, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        const hit here = {squared[i], row[i]};
+        size_t j = i;
+        for (; j > 0 && hit_before(here, (hit){squared[j - 1], row[j - 1]}); j--)
+            squared[j] = squared[j - 1], row[j] = row[j - 1];
+        squared[j] = here.squared, row[j] = here.row;
+    }
+}
+
+static void heap_sort(uint32_t *row, float *squared, size_t count)
 {
     for (size_t phase = count / 2 + count; phase-- > 0;) {
         size_t root, end;
@@ -255,19 +271,19 @@ static void sort_hits(uint32_t *row, float *squared, size_t count)
         } else { /* taking the largest off */
             root = 0;
             end = phase;
-            const ball_hit top = {squared[0], row[0]};
+            const hit top = {squared[0], row[0]};
             squared[0] = squared[end];
             row[0] = row[end];
             squared[end] = top.squared;
             row[end] = top.row;
         }
         for (size_t child; (child = 2 * root + 1) < end; root = child) {
-            ball_hit larger = {squared[child], row[child]};
+            hit larger = {squared[child], row[child]};
             if (child + 1 < end) {
-                const ball_hit right = {squared[child + 1], row[child + 1]};
+                const hit right = {squared[child + 1], row[child + 1]};
                 if (hit_before(larger, right)) larger = right, child++;
             }
-            const ball_hit here = {squared[root], row[root]};
+            const hit here = {squared[root], row[root]};
             if (!hit_before(here, larger)) break;
             squared[root] = larger.squared;
             row[root] = larger.row;
@@ -275,6 +291,41 @@ static void sort_hits(uint32_t *row, float *squared, size_t count)
             row[child] = here.row;
         }
     }
+}
+
+static void sort_hits(uint32_t *row, float *squared, size_t count)
+{
+    if (count <= FEW_HITS)
+        insertion_sort(row, squared, count);
+    else
+        heap_sort(row, squared, count);
+}
+
+/** Where plm_index_table writes. */
+typedef struct table {
+    size_t k;
+    uint32_t *row;
+    float *squared;
+} table;
+
+static void write_line(void *user, const plm_neighbourhood *found)
+{
+    const table *to = user;
+    uint32_t row[PLM_MOST_NEIGHBOURS];
+    float squared[PLM_MOST_NEIGHBOURS];
+    for (size_t i = 0; i < found->count; i++) squared[i] = found->squared[i], row[i] = found->row[found->place[i]];
+    sort_hits(row, squared, found->count);
+    const size_t line = found->point_row * to->k;
+    for (size_t i = 0; i < to->k; i++) {
+        if (to->row) to->row[line + i] = i < found->count ? row[i] : PLM_NO_ROW;
+        if (to->squared) to->squared[line + i] = i < found->count ? squared[i] : INFINITY;
+    }
+}
+
+plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error)
+{
+    table to = {k, row, squared};
+    return plm_all_nearest(index->xyz, index->count, k, write_line, &to, error);
 }
 
 size_t plm_index_ball(const plm_index *index, const float query[3], float radius, size_t room, uint32_t *row,

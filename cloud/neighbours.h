@@ -25,6 +25,9 @@ void plm_index_free(plm_index *index);
  * allocation; any number of threads may ask one index at once. */
 size_t plm_index_nearest(const plm_index *index, const float query[3], size_t k, uint32_t *row, float *squared);
 
+/** The k nearest neighbours of the indexed point `point`, itself left out; else as plm_index_nearest. */
+size_t plm_index_neighbours(const plm_index *index, uint32_t point, size_t k, uint32_t *row, float *squared);
+
 /** All points with squared distance <= radius * radius from query, sorted by distance, at most room of them written.
  * Gives the number of points in the ball, which may be larger than room (then the room nearest ones are NOT guaranteed:
  * call again with more). */

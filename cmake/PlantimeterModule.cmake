@@ -7,11 +7,12 @@ set(PLANTIMETER_C_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstri
 set(PLANTIMETER_CXX_WARNINGS -Wall -Wextra -Werror)
 
 # What every target of the project is compiled with. FMA would change last digits between machines: contraction is off.
+# Nobody reads errno or traps after arithmetic: loops with roots and choices can then be vectors, and no digit changes.
 function(plantimeter_compile target)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
   target_compile_definitions(${target} PRIVATE _XOPEN_SOURCE=700 _FILE_OFFSET_BITS=64
                                                PLM_VERSION="${PROJECT_VERSION}")
-  target_compile_options(${target} PRIVATE -ffp-contract=off -fvisibility=hidden
+  target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
                                            $<$<COMPILE_LANGUAGE:C>:${PLANTIMETER_C_WARNINGS}>
                                            $<$<COMPILE_LANGUAGE:CXX>:${PLANTIMETER_CXX_WARNINGS}>)
   if(PLANTIMETER_SANITIZE)
