@@ -5,6 +5,7 @@
 
 static const plm_command *const commands[] = {
     &plm_command_traits,
+    &plm_command_simulate,
     &plm_command_help,
 };
 

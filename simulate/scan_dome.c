@@ -1,0 +1,155 @@
+/* simulate/scan_dome.c: the laser-scanning paper's dome: 13 layers of 25 scanners on a hemisphere, each sending rays
+ * into the cone that holds the scene; a point is the first hit of a ray. Also uniform sampling of the surface. */
+#include <math.h>
+
+#include "cloud/linear.h"
+#include "simulate/random.h"
+#include "simulate/scan.h"
+
+size_t plm_dome_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3])
+{
+    size_t count = 0;
+    for (int layer = 0; layer < PLM_DOME_LAYERS; layer++) {
+        const double elevation = 0.5 * PLM_PI * (layer + 0.5) / PLM_DOME_LAYERS;
+        for (int k = 0; k < PLM_DOME_AROUND; k++, count++) {
+            /* every other layer is turned by half a step */
+            const double azimuth = 2 * PLM_PI * (k + 0.5 * (layer % 2)) / PLM_DOME_AROUND;
+            const double radius = fmax(options->dome_radius, 1.5 * stage->target_radius);
+            position[count][0] = stage->target[0] + radius * cos(elevation) * cos(azimuth);
+            position[count][1] = stage->target[1] + radius * cos(elevation) * sin(azimuth);
+            position[count][2] = stage->target[2] + radius * sin(elevation);
+        }
+    }
+    return count;
+}
+
+/* Ray number k of a scanner: directions spread evenly over the cone that holds the target. The R2 sequence (M. Roberts,
+ * The unreasonable effectiveness of quasirandom sequences, 2018), shifted at random for each scanner, fills it evenly.
+ */
+static void ray_direction(const plm_stage_set *stage, const double from[3], uint64_t key, uint64_t k,
+                          double direction[3])
+{
+    double axis[3], u[3], v[3];
+    for (int i = 0; i < 3; i++) axis[i] = stage->target[i] - from[i];
+    const double distance = plm_normalise(axis), sine = fmin(stage->target_radius / distance, 1);
+    plm_frame_of_axis(axis, u, v);
+    const double a = plm_uniform_at(key, 0) + 0.7548776662466927 * (double)k;
+    const double b = plm_uniform_at(key, 1) + 0.5698402909980532 * (double)k;
+    const double low = sqrt(1 - sine * sine), cosine = 1 - (1 - low) * (a - floor(a)), round = 2 * PLM_PI * b;
+    const double away = sqrt(fmax(1 - cosine * cosine, 0));
+    for (int i = 0; i < 3; i++) direction[i] = cosine * axis[i] + away * (cos(round) * u[i] + sin(round) * v[i]);
+}
+
+typedef struct dome_scan {
+    const plm_stage_set *stage;
+    const plm_scan_options *options;
+    size_t count;
+    double position[PLM_DOME_LAYERS * PLM_DOME_AROUND][3];
+} dome_scan;
+
+/* Rays [first, last) of every scanner; hits go to samples in the order of the rays. hits: of the plant. */
+static plm_status cast(const dome_scan *dome, uint64_t first, uint64_t last, plm_samples *samples, size_t *hits,
+                       plm_error *error)
+{
+    enum { CHUNK = 4096 };
+    plm_status status = PLM_OK;
+    plm_sample *found = plm_alloc(CHUNK, sizeof *found, error);
+    if (!found) return PLM_E_MEMORY;
+    for (size_t s = 0; s < dome->count && status == PLM_OK; s++) {
+        const double *from = dome->position[s];
+        const uint64_t key = plm_key(dome->options->seed, 1000 + s);
+        for (uint64_t start = first; start < last && status == PLM_OK; start += CHUNK) {
+            const int count = (int)(last - start < CHUNK ? last - start : CHUNK);
+#pragma omp parallel for schedule(static)
+            for (int k = 0; k < count; k++) {
+                double direction[3];
+                plm_hit hit;
+                ray_direction(dome->stage, from, key, start + (uint64_t)k, direction);
+                found[k].face = PLM_NO_FACE;
+                if (!plm_rays_first(dome->stage->rays, from, direction, 0, INFINITY, &hit)) continue;
+                for (int i = 0; i < 3; i++) found[k].xyz[i] = (float)(from[i] + hit.t * direction[i]);
+                plm_sample_label(dome->stage, hit.face, direction, dome->options->seed, &found[k]);
+            }
+            for (int k = 0; k < count && status == PLM_OK; k++) {
+                if (found[k].face == PLM_NO_FACE) continue;
+                *hits += found[k].face < dome->stage->plant_faces;
+                if (samples) status = plm_samples_add(samples, &found[k], error);
+            }
+        }
+    }
+    plm_free(found);
+    return status;
+}
+
+/* Leaves `wanted` plant points (and the same share of the others), taken at random. */
+static void thin(plm_samples *samples, const plm_stage_set *stage, size_t hits, size_t wanted, uint64_t seed)
+{
+    const uint64_t key = plm_key(seed, 13);
+    size_t kept = 0, left = hits, needed = wanted;
+    const double share = hits ? (double)wanted / (double)hits : 1;
+    for (size_t k = 0; k < samples->count; k++) {
+        const bool is_plant = samples->sample[k].face < stage->plant_faces;
+        const double draw = plm_uniform_at(key, k);
+        if (is_plant ? draw * (double)left < (double)needed : draw < share) {
+            samples->sample[kept++] = samples->sample[k];
+            needed -= is_plant;
+        }
+        left -= is_plant;
+    }
+    samples->count = kept;
+}
+
+static plm_status finish(const plm_stage_set *stage, const plm_scan_options *options, double area, plm_samples *samples,
+                         plm_scan *scan, plm_error *error)
+{
+    size_t hits = 0;
+    for (size_t k = 0; k < samples->count; k++) hits += samples->sample[k].face < stage->plant_faces;
+    scan->hits_per_area = area > 0 ? (double)hits / area : 0;
+    plm_add_noise(samples, options->noise, options->seed);
+    return plm_add_floaters(stage, options->outliers, options->seed, samples, error);
+}
+
+plm_status plm_scan_dome(const plm_stage_set *stage, const plm_scan_options *options, plm_samples *samples,
+                         plm_scan *scan, plm_error *error)
+{
+    enum { PILOT = 512, RAYS_MOST = 4000000 };
+    dome_scan dome = {.stage = stage, .options = options};
+    const double area = plm_plant_area(stage->plant);
+    const size_t wanted = options->points ? options->points : (size_t)(options->density * area + 0.5);
+    size_t trial = 0, hits = 0;
+    dome.count = plm_dome_positions(stage, options, dome.position);
+    plm_status status = cast(&dome, 0, PILOT, NULL, &trial, error);
+    if (status == PLM_OK && trial == 0)
+        status = plm_fail(error, PLM_E_DEGENERATE, "of %d rays none met the plant", PILOT * (int)dome.count);
+    /* 6 standard errors of the trial more than enough; what is too much is thinned out */
+    const double rate = status == PLM_OK ? ((double)trial - 6 * sqrt((double)trial)) / PILOT : 1;
+    const uint64_t rays = (uint64_t)fmin((double)wanted / fmax(rate, 0.1 * (double)trial / PILOT) + 64, RAYS_MOST);
+    if (status == PLM_OK) status = cast(&dome, 0, rays, samples, &hits, error);
+    if (status == PLM_OK && hits > wanted) thin(samples, stage, hits, wanted, options->seed);
+    return status == PLM_OK ? finish(stage, options, area, samples, scan, error) : status;
+}
+
+plm_status plm_scan_uniform(const plm_stage_set *stage, const plm_scan_options *options, plm_samples *samples,
+                            plm_scan *scan, plm_error *error)
+{
+    const double area = plm_plant_area(stage->plant);
+    const size_t wanted = options->points ? options->points : (size_t)(options->density * area + 0.5);
+    const uint64_t key = plm_key(options->seed, 14);
+    plm_face_sampler sampler;
+    plm_status status = plm_face_sampler_make(&stage->mesh, stage->mesh.triangle_count, &sampler, error);
+    if (status != PLM_OK) return status;
+    const double all = sampler.sum[sampler.count - 1];
+    const size_t count = (size_t)((double)wanted * (area > 0 ? all / area : 1) + 0.5);
+    for (size_t k = 0; k < count && status == PLM_OK; k++) {
+        double point[3];
+        plm_sample sample;
+        const uint32_t face =
+            plm_face_sampler_draw(&sampler, plm_uniform_at(key, 3 * k), plm_uniform_at(key, 3 * k + 1),
+                                  plm_uniform_at(key, 3 * k + 2), point);
+        for (int i = 0; i < 3; i++) sample.xyz[i] = (float)point[i];
+        plm_sample_label(stage, face, NULL, options->seed, &sample);
+        status = plm_samples_add(samples, &sample, error);
+    }
+    plm_face_sampler_free(&sampler);
+    return status == PLM_OK ? finish(stage, options, area, samples, scan, error) : status;
+}
