@@ -94,19 +94,56 @@ static bool note_pair(uint32_t face, double t, void *user)
     return false; /* go on: the segment may cut others too */
 }
 
+/* Bounding boxes of the leaves, low corner first: most edges are far from every other leaf. */
+static void leaf_boxes(const plm_virtual_plant *plant, double (*box)[2][3])
+{
+    for (size_t k = 0; k < plant->leaf_count; k++)
+        for (int i = 0; i < 3; i++) {
+            box[k][0][i] = INFINITY;
+            box[k][1][i] = -INFINITY;
+        }
+    for (size_t f = 0; f < plant->mesh.triangle_count; f++) {
+        if (plant->face_label[f] != PLM_LABEL_LEAF) continue;
+        double(*own)[3] = box[plant->mesh.face_organ[f]];
+        for (int k = 0; k < 9; k++) {
+            const double at = plant->mesh.vertex[plant->mesh.triangle[f][k / 3]][k % 3];
+            own[0][k % 3] = fmin(own[0][k % 3], at);
+            own[1][k % 3] = fmax(own[1][k % 3], at);
+        }
+    }
+}
+
+static bool is_near_another(const plm_virtual_plant *plant, const double (*box)[2][3], int32_t leaf, size_t face)
+{
+    const uint32_t *corner = plant->mesh.triangle[face];
+    for (size_t k = 0; k < plant->leaf_count; k++) {
+        bool is_apart = (int32_t)k == leaf;
+        for (int i = 0; i < 3 && !is_apart; i++) {
+            const double a = plant->mesh.vertex[corner[0]][i], b = plant->mesh.vertex[corner[1]][i],
+                         c = plant->mesh.vertex[corner[2]][i];
+            is_apart = fmin(a, fmin(b, c)) > box[k][1][i] || fmax(a, fmax(b, c)) < box[k][0][i];
+        }
+        if (!is_apart) return true;
+    }
+    return false;
+}
+
 plm_status plm_leaf_pairs_crossing(const plm_virtual_plant *plant, size_t *pairs, plm_error *error)
 {
     const plm_mesh *mesh = &plant->mesh;
     const size_t leaves = plant->leaf_count;
     plm_rays *rays = NULL;
     pair_search search = {.plant = plant, .crosses = plm_alloc_zero(leaves * leaves, 1, error)};
-    plm_status status = search.crosses ? PLM_OK : PLM_E_MEMORY;
+    double(*box)[2][3] = plm_alloc(leaves, sizeof *box, error);
+    plm_status status = search.crosses && box ? PLM_OK : PLM_E_MEMORY;
     if (status == PLM_OK)
         status = plm_rays_build((const double(*)[3])mesh->vertex, mesh->vertex_count,
                                 (const uint32_t(*)[3])mesh->triangle, 0, mesh->triangle_count, &rays, error);
+    if (status == PLM_OK) leaf_boxes(plant, box);
     for (size_t f = 0; status == PLM_OK && f < mesh->triangle_count; f++) {
-        if (plant->face_label[f] != PLM_LABEL_LEAF) continue;
         search.leaf = mesh->face_organ[f];
+        if (plant->face_label[f] != PLM_LABEL_LEAF) continue;
+        if (!is_near_another(plant, (const double(*)[2][3])box, search.leaf, f)) continue;
         for (int k = 0; k < 3; k++) {
             search.from = mesh->vertex[mesh->triangle[f][k]];
             search.to = mesh->vertex[mesh->triangle[f][(k + 1) % 3]];
@@ -118,6 +155,7 @@ plm_status plm_leaf_pairs_crossing(const plm_virtual_plant *plant, size_t *pairs
         for (size_t i = 0; i < leaves * leaves; i++) *pairs += search.crosses[i];
     }
     plm_rays_free(rays);
+    plm_free(box);
     plm_free(search.crosses);
     return status;
 }
