@@ -7,6 +7,7 @@
 #include "io/gaussian.h"
 #include "io/labels.h"
 #include "io/origin.h"
+#include "io/plain_rows.h"
 
 #include <float.h>
 #include <math.h>
@@ -107,16 +108,6 @@ static bool is_byte_colour(const plm_roles *roles)
     return true;
 }
 
-static void survey_colour(const conversion *work, size_t first, size_t count, step_rows *rows, span_survey *survey)
-{
-    if (!work->roles->column[PLM_ROLE_RED] || is_byte_colour(work->roles)) return;
-    load_roles(work, PLM_ROLE_RED, PLM_ROLE_BLUE, first, count, rows);
-    for (plm_role role = PLM_ROLE_RED; role <= PLM_ROLE_BLUE; role++)
-        for (size_t i = 0; i < count; i++)
-            if (rows->value[role][i] > survey->brightest && rows->value[role][i] <= DBL_MAX)
-                survey->brightest = rows->value[role][i];
-}
-
 static size_t span_rows(const conversion *work, size_t span)
 {
     const size_t left = work->columns->rows - span * SPAN;
@@ -130,18 +121,37 @@ static void drop_span(const conversion *work, size_t span)
     plm_bytes_drop(work->bytes, x->data + span * SPAN * x->stride, (span_rows(work, span) - 1) * x->stride);
 }
 
-static void survey_span(const conversion *work, size_t span)
+static void survey_colours(const conversion *work, size_t span, step_rows *rows, span_survey *survey)
 {
-    span_survey survey = {
-        .low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}, .bad_label = SIZE_MAX};
-    step_rows rows;
     const size_t end = span * SPAN + span_rows(work, span);
     for (size_t first = span * SPAN; first < end; first += STEP) {
         const size_t count = end - first < STEP ? end - first : STEP;
-        choose_rows(work, first, count, &rows, &survey);
-        survey_bounds(&rows, &survey);
-        survey_colour(work, first, count, &rows, &survey);
+        load_roles(work, PLM_ROLE_RED, PLM_ROLE_BLUE, first, count, rows);
+        for (plm_role role = PLM_ROLE_RED; role <= PLM_ROLE_BLUE; role++)
+            for (size_t i = 0; i < count; i++)
+                if (rows->value[role][i] > survey->brightest && rows->value[role][i] <= DBL_MAX)
+                    survey->brightest = rows->value[role][i];
     }
+}
+
+static void survey_span(const conversion *work, size_t span)
+{
+    const span_survey none = {
+        .low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}, .bad_label = SIZE_MAX};
+    const size_t begin = span * SPAN, end = begin + span_rows(work, span);
+    span_survey survey = none;
+    step_rows rows;
+    if (plm_plain_places_are(work->roles) &&
+        plm_plain_bounds(work->roles, begin, end - begin, survey.low, survey.high)) {
+        survey.kept = end - begin;
+    } else {
+        survey = none;
+        for (size_t first = begin; first < end; first += STEP) {
+            choose_rows(work, first, end - first < STEP ? end - first : STEP, &rows, &survey);
+            survey_bounds(&rows, &survey);
+        }
+    }
+    if (work->roles->column[PLM_ROLE_RED] && !is_byte_colour(work->roles)) survey_colours(work, span, &rows, &survey);
     drop_span(work, span);
     work->spans[span] = survey;
 }
@@ -192,15 +202,6 @@ static void store_splat(const step_rows *rows, size_t i, const plm_gaussian *gau
     cloud->opacity[at] = (float)(gaussian ? gaussian->opacity : rows->value[PLM_ROLE_OPACITY][i]);
 }
 
-/* All attributes of one kept row but its place and labels. */
-static void store_attributes(const conversion *work, const step_rows *rows, size_t i, const plm_gaussian *gaussian,
-                             plm_cloud *cloud, size_t at)
-{
-    if (cloud->rgb) store_colour(work, rows, i, gaussian, cloud->rgb[at]);
-    if (cloud->normal) store_normal(rows, i, gaussian, cloud->normal[at]);
-    if (cloud->extent) store_splat(rows, i, gaussian, cloud, at);
-}
-
 /* The centre, then centre + and - one standard deviation along the two long axes. */
 static void store_place(const plm_cloud *cloud, const step_rows *rows, size_t i, size_t piece,
                         const plm_gaussian *gaussian, float xyz[3])
@@ -213,24 +214,6 @@ static void store_place(const plm_cloud *cloud, const step_rows *rows, size_t i,
             at += piece % 2 ? step : -step;
         }
         xyz[axis] = (float)at;
-    }
-}
-
-/* Columns whose rows are stored as they stand, without a look at anything else: the hot loop of big files. */
-static void store_places(const step_rows *rows, plm_cloud *cloud, size_t at)
-{
-    for (int axis = 0; axis < 3; axis++) {
-        const double *value = rows->value[PLM_ROLE_X + axis], origin = cloud->origin[axis];
-        for (size_t j = 0; j < rows->kept_count; j++) cloud->xyz[at + j][axis] = (float)(value[rows->kept[j]] - origin);
-    }
-}
-
-static void store_byte_colours(const plm_roles *roles, const step_rows *rows, size_t first, plm_cloud *cloud, size_t at)
-{
-    for (int k = 0; k < 3; k++) {
-        const plm_column *column = roles->column[PLM_ROLE_RED + k];
-        const unsigned char *from = column->data + first * column->stride;
-        for (size_t j = 0; j < rows->kept_count; j++) cloud->rgb[at + j][k] = from[rows->kept[j] * column->stride];
     }
 }
 
@@ -249,41 +232,56 @@ static void store_labels(const conversion *work, const step_rows *rows, size_t f
     }
 }
 
-/* Converts the kept rows of one step; at is the point that the first of them becomes. */
-static void convert_step(const conversion *work, size_t first, const step_rows *rows, size_t at)
+/* Converts the kept rows of one step into the arrays that `to` has; at is the point that the first of them becomes. */
+static void convert_step(const conversion *work, size_t first, const step_rows *rows, plm_cloud *to, size_t at)
 {
-    plm_cloud cloud = work->cloud;
-    const bool is_splat = work->roles->is_splat, is_plain = cloud.rgb && !is_splat && is_byte_colour(work->roles);
-    if (!is_splat) store_places(rows, &cloud, at);
-    if (is_plain) store_byte_colours(work->roles, rows, first, &cloud, at);
-    if (is_plain) cloud.rgb = NULL; /* done */
     for (size_t j = 0; j < rows->kept_count; j++) {
         const size_t i = rows->kept[j];
-        const plm_gaussian *gaussian = is_splat ? &rows->gaussian[j] : NULL;
-        for (size_t piece = 0; piece < work->points_a_row; piece++) {
-            const size_t point = at + j * work->points_a_row + piece;
-            if (is_splat) store_place(&cloud, rows, i, piece, gaussian, cloud.xyz[point]);
-            store_attributes(work, rows, i, gaussian, &cloud, point);
-            if (cloud.source) cloud.source[point] = (uint32_t)(first + i);
+        const plm_gaussian *gaussian = work->roles->is_splat ? &rows->gaussian[j] : NULL;
+        for (size_t piece = 0; piece < work->points_a_row; piece++, at++) {
+            if (to->xyz) store_place(to, rows, i, piece, gaussian, to->xyz[at]);
+            if (to->rgb) store_colour(work, rows, i, gaussian, to->rgb[at]);
+            if (to->normal) store_normal(rows, i, gaussian, to->normal[at]);
+            if (to->extent) store_splat(rows, i, gaussian, to, at);
+            if (to->source) to->source[at] = (uint32_t)(first + i);
         }
     }
+}
+
+/* Copies what can be copied as it stands, and takes it out of `to`. Step by step, so that the rows are in the cache when
+ * their colours are copied. */
+static void convert_plain(const conversion *work, size_t span, plm_cloud *to, size_t at)
+{
+    const size_t begin = span * SPAN, rows = span_rows(work, span);
+    if (work->spans[span].kept != rows) return;
+    const bool has_places = plm_plain_places_are(work->roles);
+    const bool has_colours = to->rgb && plm_plain_colours_are(work->roles);
+    for (size_t done = 0; done < rows; done += STEP) {
+        const size_t count = rows - done < STEP ? rows - done : STEP;
+        if (has_places) plm_plain_places(work->roles, begin + done, count, to->origin, to->xyz + at + done);
+        if (has_colours) plm_plain_colours(work->roles, begin + done, count, to->rgb + at + done);
+    }
+    if (has_places) to->xyz = NULL;
+    if (has_colours) to->rgb = NULL;
 }
 
 static void convert_span(const conversion *work, size_t span)
 {
     span_survey *survey = &work->spans[span], again = *survey;
+    plm_cloud to = work->cloud;
     size_t at = 0;
     for (size_t before = 0; before < span; before++) at += work->spans[before].kept * work->points_a_row;
-    step_rows rows;
+    convert_plain(work, span, &to, at);
     const size_t end = span * SPAN + span_rows(work, span);
-    for (size_t first = span * SPAN; first < end; first += STEP) {
+    for (size_t first = span * SPAN; first < end && (to.xyz || plm_cloud_attributes(&to)); first += STEP) {
+        step_rows rows;
         const size_t count = end - first < STEP ? end - first : STEP;
         choose_rows(work, first, count, &rows, &again);
-        if (!work->roles->is_splat) load_roles(work, PLM_ROLE_RED, PLM_ROLE_OPACITY, first, count, &rows);
-        load_roles(work, PLM_ROLE_DC_0, PLM_ROLE_DC_2, first, count, &rows);
+        load_roles(work, PLM_ROLE_RED, PLM_ROLE_EXTENT_1, first, count, &rows);
+        load_roles(work, PLM_ROLE_OPACITY, PLM_ROLE_DC_2, first, count, &rows);
         load_roles(work, PLM_ROLE_LABEL, PLM_ROLE_ORGAN, first, count, &rows);
-        convert_step(work, first, &rows, at);
-        if (work->cloud.label) store_labels(work, &rows, first, at, survey);
+        convert_step(work, first, &rows, &to, at);
+        if (to.label) store_labels(work, &rows, first, at, survey);
         at += rows.kept_count * work->points_a_row;
     }
     drop_span(work, span);

@@ -9,7 +9,7 @@
 void plm_choose_origin(const plm_columns *columns, const plm_roles *roles, const double low[3], const double high[3],
                        double origin[3]);
 
-/** Coordinates beyond this are as good as infinite: squares of their distances overflow a float. */
-#define PLM_FARTHEST 1e18
+/** Coordinates beyond this, about 1e18, are as good as infinite: squares of their distances overflow a float. */
+#define PLM_FARTHEST 0x1p60
 
 #endif
