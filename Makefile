@@ -30,7 +30,7 @@ asan: packages ## run the tests under AddressSanitizer and UndefinedBehaviorSani
 
 fuzz: packages ## run each fuzz target for FUZZ_SECONDS
 	@cmake --preset fuzz >/dev/null
-	@cmake --build build/fuzz -j $(JOBS)
+	@cmake --build build/fuzz -j $(JOBS) --target fuzzers
 	@sh tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
 
 docs: build ## build the API reference in build/docs (no warnings allowed) and refresh docs/traits.md

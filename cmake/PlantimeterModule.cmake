@@ -15,6 +15,10 @@ function(plantimeter_compile target)
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
                                            $<$<COMPILE_LANGUAGE:C>:${PLANTIMETER_C_WARNINGS}>
                                            $<$<COMPILE_LANGUAGE:CXX>:${PLANTIMETER_CXX_WARNINGS}>)
+  if(PLANTIMETER_FUZZ)
+    # Sanitizers keep clang from vectorising the loops that ask for it; it would warn.
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link -Wno-pass-failed)
+  endif()
   if(PLANTIMETER_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${PLANTIMETER_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)

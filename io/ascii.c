@@ -199,8 +199,8 @@ static plm_status cut_chunks(const plm_bytes *bytes, size_t begin, ascii_work *w
     return PLM_OK;
 }
 
-/* Counts the rows of all chunks; gives how many there are. */
-static uint64_t count_rows(ascii_work *work, const plm_bytes *bytes, size_t first_line)
+/* Counts the rows of all chunks; gives how many there are, and the number of the line behind the last. */
+static uint64_t count_rows(ascii_work *work, const plm_bytes *bytes, size_t first_line, uint64_t *last_line)
 {
 #pragma omp parallel for schedule(dynamic) if (work->chunk_count > 1)
     for (size_t i = 0; i < work->chunk_count; i++) {
@@ -215,6 +215,7 @@ static uint64_t count_rows(ascii_work *work, const plm_bytes *bytes, size_t firs
         rows += work->chunks[i].rows;
         line += work->chunks[i].lines;
     }
+    *last_line = line;
     return rows;
 }
 
@@ -296,13 +297,15 @@ plm_status plm_ascii_read(const plm_bytes *bytes, const plm_ascii *ascii, const 
     plm_status status = lay_out(&work, roles, error);
     if (status == PLM_OK) status = cut_chunks(bytes, place->begin, &work, error);
     if (status == PLM_OK) {
-        const uint64_t found = count_rows(&work, bytes, place->line);
+        uint64_t line;
+        const uint64_t found = count_rows(&work, bytes, place->line, &line);
         const uint64_t rows = found > place->skip ? found - place->skip : 0;
         work.begin = place->skip;
         work.end = work.begin + (place->rows < rows ? place->rows : rows);
         if (place->rows != UINT64_MAX && rows < place->rows)
-            status = plm_fail(error, PLM_E_FORMAT, "%s: the file ends after %llu points, %llu were expected",
-                              bytes->name, (unsigned long long)rows, (unsigned long long)place->rows);
+            status = plm_fail(error, PLM_E_FORMAT, "%s: line %llu: the file ends after %llu points, %llu were expected",
+                              bytes->name, (unsigned long long)line, (unsigned long long)rows,
+                              (unsigned long long)place->rows);
     }
     if (status == PLM_OK) status = parse_rows(&work, bytes, error);
     if (status == PLM_OK) point_columns(&work, columns);

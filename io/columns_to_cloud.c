@@ -323,6 +323,26 @@ static unsigned attributes_of(const conversion *work, const span_survey *all)
     return wanted;
 }
 
+/* Names the row whose label or organ is not of the scheme. */
+static plm_status bad_label(const conversion *work, size_t row, plm_error *error)
+{
+    const plm_column *organs = work->roles->column[PLM_ROLE_ORGAN];
+    double label, organ = 0;
+    plm_column_load(work->roles->column[PLM_ROLE_LABEL], row, 1, &label);
+    if (work->options->label_scheme == PLM_LABELS_INSTANCES)
+        return plm_fail(error, PLM_E_FORMAT, "%s: point %zu: label %g, a whole number of 32 bits was expected",
+                        work->bytes->name, row + 1, label);
+    if (organs) plm_column_load(organs, row, 1, &organ);
+    if (organ != floor(organ) || organ > INT32_MAX)
+        return plm_fail(error, PLM_E_FORMAT, "%s: point %zu: organ %g, a whole number of 32 bits was expected",
+                        work->bytes->name, row + 1, organ);
+    return plm_fail(
+        error, PLM_E_FORMAT,
+        "%s: point %zu: label %g; 0 other, 1 stem, 2 petiole, 3 leaf or 4 ground was expected (the label scheme "
+        "`instances` reads one number an organ)",
+        work->bytes->name, row + 1, label);
+}
+
 static plm_status convert_all(conversion *work, plm_error *error)
 {
 #pragma omp parallel for schedule(dynamic) if (work->span_count > 1)
@@ -330,18 +350,7 @@ static plm_status convert_all(conversion *work, plm_error *error)
     for (size_t span = 0; span < work->span_count; span++) {
         const size_t row = work->spans[span].bad_label;
         if (row == SIZE_MAX) continue;
-        double label = NAN, organ = NAN;
-        plm_column_load(work->roles->column[PLM_ROLE_LABEL], row, 1, &label);
-        if (work->roles->column[PLM_ROLE_ORGAN]) plm_column_load(work->roles->column[PLM_ROLE_ORGAN], row, 1, &organ);
-        if (work->options->label_scheme == PLM_LABELS_INSTANCES)
-            return plm_fail(error, PLM_E_FORMAT, "%s: point %zu: label %g, a whole number of 32 bits was expected",
-                            work->bytes->name, row + 1, label);
-        return plm_fail(
-            error, PLM_E_FORMAT,
-            "%s: point %zu: label %g with organ %g; the label was expected to be 0 other, 1 stem, 2 petiole, "
-            "3 leaf or 4 ground and the organ a whole number (label scheme `instances` reads one number an "
-            "organ)",
-            work->bytes->name, row + 1, label, organ);
+        return bad_label(work, row, error);
     }
     if (work->cloud.label && work->options->label_scheme == PLM_LABELS_INSTANCES)
         return plm_labels_from_instances(&work->cloud, work->options->stem_label, work->bytes->name, error);

@@ -22,7 +22,7 @@ typedef struct range {
 /* Counts the rows in each part of the range; gives how many there are. NaN is in none. */
 static uint64_t count_rows(const plm_columns *columns, const plm_column *column, range within, uint64_t bin[BINS])
 {
-    const double scale = BINS / (within.high - within.low);
+    const double length = within.high - within.low; /* may be so small that its inverse is not finite */
     double value[STEP];
     uint64_t inside = 0;
     for (size_t first = 0; first < columns->rows; first += STEP) {
@@ -30,7 +30,7 @@ static uint64_t count_rows(const plm_columns *columns, const plm_column *column,
         plm_column_load(column, first, count, value);
         for (size_t i = 0; i < count; i++) {
             if (!(value[i] >= within.low && value[i] <= within.high)) continue;
-            const int at = (int)((value[i] - within.low) * scale);
+            const int at = (int)((value[i] - within.low) / length * BINS);
             bin[at < BINS ? at : BINS - 1]++;
             inside++;
         }
