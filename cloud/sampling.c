@@ -16,14 +16,28 @@ enum {
     QUADRIC_NEIGHBOURS = 24,
     QUADRIC_MAXIMUM = 250, /* largest neighbourhood of a quadric ... */
     QUADRIC_USED = 60,     /* ... of which so many strided points are fitted */
+    QUADRIC_WORK = 20000,  /* neighbours looked at in all */
     QUADRIC_TERMS = 6,
     MINIMUM_POINTS = 12
 };
 
 /* A quadric needs a ball of 5 sigma; below this the heights are cut off (checked on simulated sheets). */
 static const double ball_per_noise = 5.0;
+
 /* Share of points with r_1 < 0.25 r_8: at most 0.03 in voxel means, at least 0.10 in other clouds. */
 static const double near_ratio = 0.25, fused_share = 0.06;
+
+bool plm_neighbour_is_close(const float *squared, size_t count)
+{
+    size_t first = 0;
+    while (first < count && squared[first] == 0) first++; /* duplicates tell nothing of voxels */
+    return first < count && sqrt(squared[first]) < near_ratio * sqrt(squared[count - 1]);
+}
+
+bool plm_close_share_is_fused(double share)
+{
+    return share < fused_share;
+}
 
 static int compare_floats(const void *a, const void *b)
 {
@@ -126,8 +140,7 @@ static uint64_t hash_point(const float point[3])
     return hash ^ (hash >> 33);
 }
 
-/* Rows of about wanted points (all of them where there are no more), chosen by coordinates. row has room for count. */
-static size_t sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row)
+size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row)
 {
     const uint64_t limit = count <= wanted ? UINT64_MAX : (uint64_t)((double)wanted / (double)count * 0x1p63) << 1;
     size_t taken = 0;
@@ -159,9 +172,7 @@ static plm_status measure_spacing(const plm_index *index, const float (*xyz)[3],
             if (row[j] != sample[i]) row[known] = row[j], squared[known++] = squared[j];
         if (known > K) known = K; /* self was not among them: more than K coincident points */
         local[i] = spacing_at(xyz, sample[i], row, known);
-        size_t first = 0;
-        while (first < known && squared[first] == 0) first++; /* duplicates tell nothing of voxels */
-        if (first < known && sqrt(squared[first]) < near_ratio * sqrt(squared[known - 1])) close++;
+        close += plm_neighbour_is_close(squared, known);
     }
     *spacing = median_of(local, count);
     *share = (double)close / (double)count;
@@ -227,23 +238,31 @@ static plm_status measure_residual(const plm_index *index, const float (*xyz)[3]
     return status;
 }
 
-/* Noise, the neighbourhood grown until its radius is 5 sigma: where sigma is near the spacing, 24 neighbours are a ball
- * and their plane is any plane. */
-static plm_status measure_noise(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
-                                size_t total, double *noise, plm_error *error)
+/* The neighbourhood is grown until its radius is 5 sigma: where sigma is near the spacing, 24 neighbours are a ball and
+ * their plane is any plane. */
+plm_status plm_noise_measure(const plm_index *index, const float (*xyz)[3], size_t total, double *noise,
+                             plm_error *error)
 {
     const size_t most = total < QUADRIC_MAXIMUM ? total : QUADRIC_MAXIMUM;
     size_t wanted = total < QUADRIC_NEIGHBOURS ? total : QUADRIC_NEIGHBOURS;
+    uint32_t *sample = plm_alloc(total, sizeof *sample, error);
+    if (!sample) return PLM_E_MEMORY;
     plm_status status;
+    double found = 0;
     for (int round = 0;; round++) {
         double radius;
-        status = measure_residual(index, xyz, sample, count, wanted, noise, &radius, error);
-        if (status != PLM_OK || round == 3 || wanted == most || !(radius > 0) || radius >= ball_per_noise * *noise)
+        /* Fewer of the larger ones: their residuals scatter less. */
+        const size_t affordable = QUADRIC_WORK / wanted;
+        const size_t count = plm_sample_rows(xyz, total, affordable < SAMPLE_NOISE ? affordable : SAMPLE_NOISE, sample);
+        status = measure_residual(index, xyz, sample, count, wanted, &found, &radius, error);
+        if (status != PLM_OK || round == 3 || wanted == most || !(radius > 0) || radius >= ball_per_noise * found)
             break;
-        const double ratio = ball_per_noise * *noise / radius;
+        const double ratio = ball_per_noise * found / radius;
         const double larger = ceil((double)wanted * ratio * ratio);
         wanted = larger < (double)most ? (size_t)larger : most;
     }
+    plm_free(sample);
+    if (status == PLM_OK) *noise = found;
     return status;
 }
 
@@ -257,13 +276,10 @@ plm_status plm_sampling_measure(const plm_index *index, const float (*xyz)[3], s
     if (!sample) return PLM_E_MEMORY;
     plm_sampling found = {0};
     double share = 0;
-    size_t taken = sample_rows(xyz, count, SAMPLE_SPACING, sample);
+    const size_t taken = plm_sample_rows(xyz, count, SAMPLE_SPACING, sample);
     plm_status status = measure_spacing(index, xyz, sample, taken, &found.spacing, &share, error);
-    if (status == PLM_OK) {
-        found.fused = fused_known ? *fused_known : share < fused_share;
-        taken = sample_rows(xyz, count, SAMPLE_NOISE, sample);
-        status = measure_noise(index, xyz, sample, taken, count, &found.noise, error);
-    }
+    if (status == PLM_OK) found.fused = fused_known ? *fused_known : plm_close_share_is_fused(share);
+    if (status == PLM_OK) status = plm_noise_measure(index, xyz, count, &found.noise, error);
     plm_free(sample);
     if (status == PLM_OK) *sampling = found;
     return status;

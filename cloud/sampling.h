@@ -27,4 +27,18 @@ plm_status plm_spacing_local(const plm_index *index, const float (*xyz)[3], size
 plm_status plm_sampling_measure(const plm_index *index, const float (*xyz)[3], size_t count, const bool *fused_known,
                                 plm_sampling *sampling, plm_error *error);
 
+/** The noise of plm_sampling_measure alone: median of the residual SD of some 400 local quadrics. At least 1 point. */
+plm_status plm_noise_measure(const plm_index *index, const float (*xyz)[3], size_t count, double *noise,
+                             plm_error *error);
+
+/** Whether a point's nearest neighbour is far nearer than its count-th, as happens by chance but not in voxel means.
+ * squared: sorted squared distances to its neighbours (8 of them for plm_close_share_is_fused). */
+bool plm_neighbour_is_close(const float *squared, size_t count);
+/** Whether points of which this share is close to a neighbour are voxel means. */
+bool plm_close_share_is_fused(double share);
+
+/** Rows of about wanted of count points (all of them where there are no more), in row order, chosen by a hash of their
+ * coordinates: a random thinning that does not depend on the order of rows. row has room for count. Gives how many. */
+size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row);
+
 #endif

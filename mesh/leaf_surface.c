@@ -1,0 +1,256 @@
+/* mesh/leaf_surface.c: the one-sided surface of a leaf, its area and plane, and how far they can be trusted.
+ *
+ * The points are cut into parts and charts (leaf_points.c, leaf_charts.c); each chart's heights are smoothed
+ * (leaf_sheet.c), its points triangulated in its plane and trimmed with a local alpha (leaf_patch.c, leaf_trim.c). The
+ * sum of the triangles lacks what the sampling leaves at the rim, and has what noise along the surface adds there: both
+ * are proportional to the length of the rim. The density of points gives a second area (leaf_density.c). */
+#include "mesh/mesh.h"
+
+#include "cloud/linear.h"
+#include "cloud/sampling.h"
+#include "mesh/leaf_density.h"
+#include "mesh/leaf_mesh.h"
+#include "mesh/leaf_trim.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    MOST_POINTS = 30000, /* more add no structure, only time */
+    FEWEST_TRUSTED = 300 /* points of a leaf without PLM_SURFACE_LOW_DENSITY */
+};
+
+/* Circumradius up to which a triangle is leaf, in local spacings: random points exceed it once in a million. */
+static const double alpha_factor = 2.3;
+static const double alpha_step = 1.1;   /* for the sensitivity */
+static const double largest_hole = 0.1; /* share of the leaf's area up to which a hole is filled */
+
+/* Rim of the trimmed triangles against the true one, in spacings: inset by sampling (simulated discs with random points:
+ * 0.40; the rest is curvature that the smoothing leaves), outset by noise x = SD along the surface / spacing. */
+static const double rim_inset = 0.43, rim_outset = 1.1, rim_bend = 0.37;
+/* SD along the surface per SD across it: between 0.3 (along the normal only) and 1 (alike in all directions). */
+static const double noise_along = 0.7;
+/* Voxel means: a voxel hit by one stray pixel counts as much as one hit by fifty, so the rim moves out in proportion. */
+static const double fused_outset = 1.05, fused_outset_density = 0.62;
+/* The centres of fitted discs stay inside the rim by about their own radius. */
+static const double disc_inset = 1.0;
+
+/* What all patches add up to. */
+typedef struct surface_work {
+    plm_leaf_points points;
+    plm_leaf_draft draft;
+    plm_trim_sums sums, tighter, looser; /* at alpha, and a step to either side of it */
+    plm_density_areas density;
+    double noise;
+    double layers; /* sum over points of the half distance of layers, squared */
+    bool fused;
+    size_t chart_count;
+} surface_work;
+
+/* ---- One chart after another ----------------------------------------------------------------------------------- */
+
+/* Trims at alpha, and a step to either side of it for the sensitivity; state is left as alpha has it. */
+static plm_status trim_patch(double radius, plm_leaf_patch *patch, surface_work *work, plm_error *error)
+{
+    plm_trim trim = {alpha_factor / alpha_step, radius / alpha_step, largest_hole};
+    plm_status status = plm_leaf_trim(patch, &trim, patch->state, &work->tighter, error);
+    trim = (plm_trim){alpha_factor * alpha_step, radius * alpha_step, largest_hole};
+    if (status == PLM_OK) status = plm_leaf_trim(patch, &trim, patch->state, &work->looser, error);
+    trim = (plm_trim){alpha_factor, radius, largest_hole};
+    if (status == PLM_OK) status = plm_leaf_trim(patch, &trim, patch->state, &work->sums, error);
+    return status;
+}
+
+static plm_status add_chart(const uint32_t *row, size_t count, const plm_leaf_charts *charts, size_t chart,
+                            double radius, surface_work *work, plm_error *error)
+{
+    plm_leaf_patch patch = {0};
+    plm_status status = plm_leaf_patch_make(&work->points, row, count, charts, chart, work->noise, &patch, error);
+    if (status == PLM_OK) status = trim_patch(radius, &patch, work, error);
+    if (status == PLM_OK) status = plm_leaf_density(&patch, patch.state, charts, &work->density, error);
+    if (status == PLM_OK) status = plm_leaf_draft_add(&work->draft, &patch, patch.state, error);
+    work->layers += (double)patch.member_count * patch.layers * patch.layers;
+    plm_leaf_patch_free(&patch);
+    return status;
+}
+
+static plm_status add_part(size_t part, uint32_t *row, double radius, surface_work *work, plm_error *error)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < work->points.count; i++)
+        if (work->points.component[i] == part) row[count++] = (uint32_t)i;
+    plm_leaf_charts charts = {0};
+    const size_t first = work->draft.count;
+    plm_status status = plm_leaf_charts_make(&work->points, row, count, work->noise, &charts, error);
+    for (size_t k = 0; k < charts.count && status == PLM_OK; k++)
+        status = add_chart(row, count, &charts, k, radius, work, error);
+    if (status == PLM_OK && charts.count > 1) status = plm_leaf_draft_mend(&work->draft, first, error);
+    work->chart_count += charts.count;
+    plm_leaf_charts_free(&charts);
+    return status;
+}
+
+static plm_status gather(const float (*xyz)[3], size_t count, const plm_surface_options *options, surface_work *work,
+                         plm_error *error)
+{
+    plm_status status = plm_leaf_points_make(xyz, count, MOST_POINTS, &work->points, error);
+    if (status != PLM_OK) return status;
+    const plm_leaf_points *points = &work->points;
+    work->fused = options->fused < 0 ? points->fused : options->fused > 0;
+    work->noise = options->noise;
+    if (options->noise < 0)
+        status = plm_noise_measure(points->index, (const float(*)[3])points->xyz, points->count, &work->noise, error);
+    if (status == PLM_OK) status = plm_leaf_draft_create(points->count, &work->draft, error);
+    uint32_t *row = status == PLM_OK ? plm_alloc(points->count, sizeof *row, error) : NULL;
+    if (status == PLM_OK && !row) status = PLM_E_MEMORY;
+    for (size_t part = 0; part < points->component_count && status == PLM_OK; part++)
+        status = add_part(part, row, options->alpha, work, error);
+    plm_free(row);
+    return status;
+}
+
+/* ---- What it measures -------------------------------------------------------------------------------------------- */
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* The area and its standard error. What is unsure: where the rim is, holes that were filled, seams, and what the second
+ * area says. */
+static void measure_area(const surface_work *work, const plm_surface_options *options, plm_leaf_surface *out)
+{
+    const plm_trim_sums *sums = &work->sums;
+    const double s = out->spacing, sigma = work->noise, rim = sums->boundary;
+    /* Layers lie apart across the leaf, not along it. */
+    const double layers = work->layers / (double)work->points.count;
+    const double x = noise_along * sqrt(fmax(sigma * sigma - layers, 0)) / s;
+    double rim_error, second = work->density.half;
+    if (work->fused) {
+        second -= fused_outset_density * sigma * rim;
+        out->area = sums->area + rim * (rim_inset * s - fused_outset * sigma);
+        rim_error = rim * sqrt(square(0.2 * s) + square(0.3 * sigma));
+        if (fabs(second - out->area) < 2 * rim_error) out->area = 0.5 * (out->area + second);
+    } else {
+        out->area = sums->area + rim * s * (rim_inset - rim_outset * x * x / (1 + rim_bend * x));
+        out->area += disc_inset * options->extent * rim;
+        rim_error = rim * sqrt(square(0.1 * s) + square(0.45 * sigma) + square(0.25 * options->extent));
+    }
+    const double holes = 0.5 * (sums->hole_area + sums->gap_area);
+    const double seams = sums->area * fmin(0.003 * sqrt((double)work->chart_count), 0.03);
+    out->area_std_error = sqrt(square(rim_error) + square(holes) + square(seams) + square(0.05 * (second - out->area)));
+    out->boundary_length = rim;
+    out->holes_filled = sums->hole_area;
+}
+
+/* Tilt against zenith of the best-fit plane of the density raster: a second opinion on the mesh's. */
+static double density_tilt(const plm_density_areas *density)
+{
+    double moment[6], value[3], axis[3][3];
+    for (int i = 0, k = 0; i < 3; i++)
+        for (int j = i; j < 3; j++, k++)
+            moment[k] = density->second[k] - density->first[i] * density->first[j] / density->half;
+    plm_eigen3(moment, value, axis);
+    return atan2(hypot(axis[2][0], axis[2][1]), fabs(axis[2][2]));
+}
+
+/* Standard error of the plane's direction: scatter of the points, views shifted against each other, what the second
+ * raster says, and how little a bent leaf determines a plane. Coefficients from virtual plants of ten kinds. */
+static void measure_plane(const surface_work *work, plm_leaf_surface *out)
+{
+    const double width = sqrt(out->plane.eigenvalue[1]);
+    const double flatness = out->plane.eigenvalue[2] / out->plane.eigenvalue[1];
+    const double tilt = atan2(hypot(out->plane.normal[0], out->plane.normal[1]), fabs(out->plane.normal[2]));
+    const double scatter = 3 * work->noise / (sqrt((double)work->points.count) * width);
+    const double views = work->fused ? 0.025e-3 / width : 0;
+    const double second = work->density.half > 0 ? 0.3 * (density_tilt(&work->density) - tilt) : 0;
+    const double bend = plm_radians(0.34 * sqrt(fmax(flatness, 0)) / fmax(1 - flatness, 1e-3));
+    const double least = plm_radians(0.02);
+    out->plane_std_error = sqrt(square(scatter) + square(views) + square(second) + square(bend) + square(least));
+    if (flatness > 0.2) out->flags |= PLM_SURFACE_CURVED;
+}
+
+/* Area-weighted mean and SD of the facets' inclinations. */
+static void measure_facets(plm_leaf_surface *out)
+{
+    const plm_mesh *mesh = &out->mesh;
+    double area = 0, mean = 0, squares = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        double a[3], b[3], normal[3];
+        for (int i = 0; i < 3; i++) {
+            a[i] = mesh->vertex[mesh->triangle[t][1]][i] - mesh->vertex[mesh->triangle[t][0]][i];
+            b[i] = mesh->vertex[mesh->triangle[t][2]][i] - mesh->vertex[mesh->triangle[t][0]][i];
+        }
+        plm_cross(a, b, normal);
+        const double weight = plm_norm(normal);
+        if (!(weight > 0)) continue;
+        const double tilt = atan2(hypot(normal[0], normal[1]), fabs(normal[2]));
+        area += weight; /* West's running mean and sum of squares */
+        const double step = tilt - mean;
+        mean += step * weight / area;
+        squares += weight * step * (tilt - mean);
+    }
+    out->facet_inclination_mean = mean;
+    out->facet_inclination_sd = area > 0 ? sqrt(squares / area) : 0;
+}
+
+static void raise_flags(const surface_work *work, size_t count, plm_leaf_surface *out)
+{
+    const plm_trim_sums *sums = &work->sums;
+    if (count < FEWEST_TRUSTED) out->flags |= PLM_SURFACE_LOW_DENSITY;
+    if (sums->hole_area + sums->gap_area > 0.02 * sums->area || sums->sparse_area > 0.05 * sums->area)
+        out->flags |= PLM_SURFACE_OCCLUDED;
+    if (fabs(out->alpha_sensitivity) > 0.1) out->flags |= PLM_SURFACE_ALPHA_SENSITIVE;
+}
+
+static plm_status finish(surface_work *work, size_t count, const plm_surface_options *options, plm_leaf_surface *out,
+                         plm_error *error)
+{
+    out->noise = work->noise;
+    out->component_count = work->points.component_count;
+    out->chart_count = work->chart_count;
+    if (!(work->sums.area > 0)) {
+        if (options->alpha > 0)
+            return plm_fail(error, PLM_E_DEGENERATE,
+                            "no triangle has a circumradius below alpha = %g m; leave alpha "
+                            "to be found, or make it larger",
+                            options->alpha);
+        return plm_fail(error, PLM_E_DEGENERATE, "the leaf's %zu points span no surface", count);
+    }
+    out->spacing = work->sums.spacing_area / work->sums.area;
+    out->alpha = options->alpha > 0 ? options->alpha : alpha_factor * out->spacing;
+    out->alpha_sensitivity =
+        log(work->looser.area / fmax(work->tighter.area, 1e-3 * work->looser.area)) / (2 * log(alpha_step));
+    measure_area(work, options, out);
+    plm_status status =
+        plm_leaf_draft_finish(&work->draft, out->area, 0.8 * out->spacing, &out->mesh, &out->area_mesh, error);
+    if (status == PLM_OK) status = plm_mesh_plane(&out->mesh, &out->plane, error);
+    if (status != PLM_OK) return status;
+    measure_plane(work, out);
+    measure_facets(out);
+    raise_flags(work, count, out);
+    return PLM_OK;
+}
+
+plm_status plm_leaf_surface_make(const float (*xyz)[3], size_t count, const plm_surface_options *options,
+                                 plm_leaf_surface *surface, plm_error *error)
+{
+    surface_work work = {0};
+    plm_leaf_surface made = {0};
+    plm_status status = gather(xyz, count, options, &work, error);
+    if (status == PLM_OK) status = finish(&work, count, options, &made, error);
+    plm_leaf_draft_free(&work.draft);
+    plm_leaf_points_free(&work.points);
+    if (status == PLM_OK)
+        *surface = made;
+    else
+        plm_leaf_surface_free(&made);
+    return status;
+}
+
+void plm_leaf_surface_free(plm_leaf_surface *surface)
+{
+    if (!surface) return;
+    plm_mesh_free(&surface->mesh);
+    *surface = (plm_leaf_surface){0};
+}

@@ -1,0 +1,202 @@
+/* Leaf surfaces of shapes whose area is known in closed form, sampled at random: flat, tilted, bent, noisy, in two layers,
+ * with density gradients, with stray points. */
+#include "support/test.h"
+
+#include "cloud/linear.h"
+#include "mesh/mesh.h"
+
+typedef struct leaf_case {
+    double length, width; /* of the ellipse laid flat, metres */
+    double bend;          /* angle over which it is rolled about an axis across its length; 0: flat */
+    double tilt;          /* about the axis across it */
+    double noise;         /* SD across the surface */
+    double layers;        /* distance of two layers; 0: one */
+    double gradient;      /* density at one end over that at the other */
+    size_t count;
+    uint64_t seed;
+} leaf_case;
+
+/* Points of an ellipse rolled onto a cylinder: the map keeps areas. */
+static float (*make_leaf(const leaf_case *leaf))[3]
+{
+    float(*xyz)[3] = malloc(leaf->count * sizeof *xyz);
+    assert_non_null(xyz);
+    uint64_t seed = leaf->seed;
+    for (size_t i = 0; i < leaf->count;) {
+        const double u = 2 * test_uniform(&seed) - 1, v = 2 * test_uniform(&seed) - 1;
+        if (u * u + v * v > 1) continue;
+        if (leaf->gradient > 1 && test_uniform(&seed) > pow(leaf->gradient, -0.5 * (u + 1))) continue;
+        double off = leaf->noise * test_normal(&seed);
+        if (leaf->layers > 0) off += (test_uniform(&seed) < 0.5 ? -0.5 : 0.5) * leaf->layers;
+        double x = 0.5 * leaf->length * u, z = off;
+        if (leaf->bend > 0) {
+            const double radius = leaf->length / leaf->bend, angle = x / radius;
+            x = (radius + off) * sin(angle);
+            z = (radius + off) * cos(angle) - radius;
+        }
+        xyz[i][0] = (float)(x * cos(leaf->tilt) - z * sin(leaf->tilt));
+        xyz[i][1] = (float)(0.5 * leaf->width * v);
+        xyz[i][2] = (float)(x * sin(leaf->tilt) + z * cos(leaf->tilt));
+        i++;
+    }
+    return xyz;
+}
+
+static double area_of(const leaf_case *leaf)
+{
+    return PLM_PI * 0.25 * leaf->length * leaf->width;
+}
+
+static plm_leaf_surface measure(float (*xyz)[3], size_t count)
+{
+    const plm_surface_options options = {.noise = -1, .fused = 0};
+    plm_leaf_surface surface;
+    plm_error error;
+    assert_ok(plm_leaf_surface_make((const float(*)[3])xyz, count, &options, &surface, &error));
+    return surface;
+}
+
+static double tilt_of(const plm_leaf_surface *surface)
+{
+    const double *n = surface->plane.normal;
+    return atan2(hypot(n[0], n[1]), fabs(n[2]));
+}
+
+static void areas_and_tilts_are_those_of_the_shape(void **unused)
+{
+    (void)unused;
+    /* Tolerances in per cent: about three times the scatter over seeds. */
+    static const struct {
+        leaf_case leaf;
+        double tolerance;
+    } cases[] = {
+        {{.length = 0.10, .width = 0.06, .tilt = 0.3, .count = 8000, .seed = 1}, 0.8},
+        {{.length = 0.10, .width = 0.06, .tilt = 1.2, .count = 1500, .seed = 2}, 2.0},
+        {{.length = 0.03, .width = 0.02, .tilt = 0.0, .count = 400, .seed = 3}, 4.0},
+        {{.length = 0.10, .width = 0.06, .bend = 1.0, .tilt = 0.5, .count = 8000, .seed = 4}, 0.8},
+        {{.length = 0.20, .width = 0.03, .bend = 2.6, .tilt = 0.0, .count = 8000, .seed = 5}, 1.5},
+        {{.length = 0.12, .width = 0.10, .tilt = 0.4, .noise = 0.5e-3, .count = 10000, .seed = 6}, 1.5},
+        {{.length = 0.12, .width = 0.10, .tilt = 0.4, .noise = 1e-3, .count = 10000, .seed = 7}, 3.0},
+        {{.length = 0.12, .width = 0.10, .tilt = 0.4, .layers = 1e-3, .count = 10000, .seed = 8}, 1.5},
+        {{.length = 0.04, .width = 0.03, .tilt = 0.4, .layers = 1e-3, .count = 10000, .seed = 9}, 2.0},
+        {{.length = 0.12, .width = 0.10, .tilt = 0.4, .gradient = 10, .count = 10000, .seed = 10}, 1.5},
+        {{.length = 0.12, .width = 0.10, .tilt = 0.4, .count = 50000, .seed = 11}, 0.6},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        const leaf_case *leaf = &cases[i].leaf;
+        float(*xyz)[3] = make_leaf(leaf);
+        plm_leaf_surface surface = measure(xyz, leaf->count);
+        assert_near(100 * (surface.area / area_of(leaf) - 1), 0, cases[i].tolerance);
+        assert_near(surface.area, area_of(leaf), 3.5 * surface.area_std_error);
+        if (leaf->bend < 2) assert_near(tilt_of(&surface), leaf->tilt, 4 * surface.plane_std_error);
+        assert_int_equal(surface.component_count, 1);
+        plm_leaf_surface_free(&surface);
+        free(xyz);
+    }
+}
+
+/* One side, one winding: no side of a triangle is used twice in one direction; the area is what is reported. */
+static void the_mesh_is_one_consistent_sheet(void **unused)
+{
+    (void)unused;
+    const double bends[] = {0, 2.6};
+    for (size_t b = 0; b < COUNT(bends); b++) {
+        const leaf_case leaf = {.length = 0.2, .width = 0.05, .bend = bends[b], .count = 4000, .seed = 12};
+        float(*xyz)[3] = make_leaf(&leaf);
+        plm_leaf_surface surface = measure(xyz, leaf.count);
+        const plm_mesh *mesh = &surface.mesh;
+        plm_error error;
+        double area;
+        assert_ok(plm_mesh_area(mesh, &area, &error));
+        assert_near(area / surface.area, 1, 0.01);
+        uint8_t *used = calloc(mesh->vertex_count * mesh->vertex_count, 1);
+        assert_non_null(used);
+        for (size_t t = 0; t < mesh->triangle_count; t++)
+            for (int i = 0; i < 3; i++) {
+                const size_t from = mesh->triangle[t][i], to = mesh->triangle[t][(i + 1) % 3];
+                assert_int_equal(used[from * mesh->vertex_count + to]++, 0);
+            }
+        free(used);
+        plm_leaf_surface_free(&surface);
+        free(xyz);
+    }
+}
+
+static void stray_points_and_the_order_of_rows_change_nothing_much(void **unused)
+{
+    (void)unused;
+    const leaf_case leaf = {.length = 0.12, .width = 0.08, .bend = 0.8, .noise = 2e-4, .count = 6000, .seed = 13};
+    float(*xyz)[3] = make_leaf(&leaf);
+    plm_leaf_surface whole = measure(xyz, leaf.count);
+    for (size_t i = 0; i < leaf.count / 2; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const float other = xyz[i][axis];
+            xyz[i][axis] = xyz[leaf.count - 1 - i][axis];
+            xyz[leaf.count - 1 - i][axis] = other;
+        }
+    plm_leaf_surface turned = measure(xyz, leaf.count);
+    assert_true(turned.area == whole.area && turned.plane.normal[2] == whole.plane.normal[2]);
+    uint64_t seed = 14;
+    for (int i = 0; i < 30; i++) xyz[i * 17][2] += (float)(0.002 + 0.01 * test_uniform(&seed)); /* ghosts above it */
+    plm_leaf_surface ghosts = measure(xyz, leaf.count);
+    assert_near(ghosts.area / whole.area, 1, 0.005);
+    plm_leaf_surface_free(&whole);
+    plm_leaf_surface_free(&turned);
+    plm_leaf_surface_free(&ghosts);
+    free(xyz);
+}
+
+static void a_hole_is_filled_and_flagged(void **unused)
+{
+    (void)unused;
+    const leaf_case leaf = {.length = 0.1, .width = 0.1, .count = 8000, .seed = 15};
+    float(*xyz)[3] = make_leaf(&leaf);
+    size_t kept = 0; /* a disc of 4 % of the area is hidden */
+    for (size_t i = 0; i < leaf.count; i++)
+        if (hypot((double)xyz[i][0], (double)xyz[i][1] - 0.01) > 0.01) memcpy(xyz[kept++], xyz[i], sizeof *xyz);
+    plm_leaf_surface surface = measure(xyz, kept);
+    assert_near(surface.area / area_of(&leaf), 1, 0.01);
+    assert_near(surface.holes_filled / area_of(&leaf), 0.04, 0.01); /* reaches half a spacing further */
+    assert_true(surface.flags & PLM_SURFACE_OCCLUDED);
+    plm_leaf_surface_free(&surface);
+    free(xyz);
+}
+
+static void odd_input_gives_a_status_that_says_why(void **unused)
+{
+    (void)unused;
+    plm_error error;
+    plm_leaf_surface surface;
+    plm_surface_options options = {.noise = -1, .fused = -1};
+    float line[200][3] = {{0}}, same[50][3] = {{0}};
+    for (int i = 0; i < 200; i++) line[i][0] = 0.001f * (float)i;
+    const float(*points)[3] = (const float(*)[3])line;
+    assert_int_equal(plm_leaf_surface_make(points, 11, &options, &surface, &error), PLM_E_DEGENERATE);
+    assert_int_equal(plm_leaf_surface_make(points, 0, &options, &surface, &error), PLM_E_DEGENERATE);
+    assert_int_equal(plm_leaf_surface_make(points, 200, &options, &surface, &error), PLM_E_DEGENERATE);
+    assert_int_equal(plm_leaf_surface_make((const float(*)[3])same, 50, &options, &surface, &error), PLM_E_DEGENERATE);
+    const leaf_case leaf = {.length = 0.1, .width = 0.05, .count = 500, .seed = 16};
+    float(*xyz)[3] = make_leaf(&leaf);
+    options.alpha = 1e-5;
+    assert_int_equal(plm_leaf_surface_make((const float(*)[3])xyz, leaf.count, &options, &surface, &error),
+                     PLM_E_DEGENERATE);
+    assert_non_null(strstr(error.message, "alpha"));
+    options.alpha = 0.01; /* a wide one: the hull of the ellipse is the ellipse */
+    assert_ok(plm_leaf_surface_make((const float(*)[3])xyz, leaf.count, &options, &surface, &error));
+    assert_near(surface.area / area_of(&leaf), 1, 0.05);
+    assert_near(surface.alpha, 0.01, 1e-12);
+    plm_leaf_surface_free(&surface);
+    free(xyz);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(areas_and_tilts_are_those_of_the_shape),
+        cmocka_unit_test(the_mesh_is_one_consistent_sheet),
+        cmocka_unit_test(stray_points_and_the_order_of_rows_change_nothing_much),
+        cmocka_unit_test(a_hole_is_filled_and_flagged),
+        cmocka_unit_test(odd_input_gives_a_status_that_says_why),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
