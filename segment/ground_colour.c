@@ -1,0 +1,41 @@
+/* segment/ground_colour.c: does colour tell plant from ground in this cloud, and which colours are the plant's? Counts in
+ * a coarse cube of colours, learned from what shape has told apart. Nothing is known of leaves or pots beforehand: white
+ * pots, red leaves and grey clouds are all judged by themselves. */
+#include <math.h>
+#include <string.h>
+
+#include "segment/ground_mark.h"
+
+static const double most_mixed = 0.1; /* share of points that would be taken for the other kind */
+
+/* Makes counts by colour, each smoothed over the neighbouring colours, shares of all. */
+static void spread(double count[PLM_COLOURS])
+{
+    static const int stride[3] = {PLM_SHADES * PLM_SHADES, PLM_SHADES, 1};
+    double smooth[PLM_COLOURS] = {0}, sum = 0;
+    for (int c = 0; c < PLM_COLOURS; c++) {
+        smooth[c] += count[c];
+        for (int axis = 0; axis < 3; axis++) {
+            const int at = c / stride[axis] % PLM_SHADES;
+            if (at > 0) smooth[c - stride[axis]] += 0.1 * count[c];
+            if (at + 1 < PLM_SHADES) smooth[c + stride[axis]] += 0.1 * count[c];
+        }
+    }
+    for (int c = 0; c < PLM_COLOURS; c++) sum += smooth[c];
+    for (int c = 0; c < PLM_COLOURS; c++) count[c] = sum > 0 ? smooth[c] / sum : 0;
+}
+
+bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
+{
+    double plant[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0;
+    for (size_t i = 0; i < m->cloud->count; i++)
+        (m->zone[i] == PLM_ZONE_FREE ? plant : ground)[plm_shade(m->cloud->rgb[i])]++;
+    spread(plant);
+    spread(ground);
+    for (int c = 0; c < PLM_COLOURS; c++) {
+        mixed += 0.5 * fmin(plant[c], ground[c]);
+        const double sum = plant[c] + ground[c];
+        plant_share[c] = sum > 0 ? (float)(plant[c] / sum) : 0.5f;
+    }
+    return mixed < most_mixed;
+}

@@ -1,0 +1,72 @@
+/* segment/ground_mark.h: from a scene with ground to ground points. Internal: ground_mark.c puts the steps of
+ * ground_zone.c (by shape), ground_colour.c (by colour) and ground_pieces.c (by what hangs together) in order. */
+#ifndef PLANTIMETER_SEGMENT_GROUND_MARK_H
+#define PLANTIMETER_SEGMENT_GROUND_MARK_H
+
+#include "segment/ground_scene.h"
+#include "segment/relief.h"
+
+/** Heights and sizes as the marking found them, in the stand's coordinates. */
+typedef struct plm_ground_marks {
+    double foot[3];    /**< where the plant leaves the soil: u, v, w */
+    double rim[3];     /**< middle of the pot's rim */
+    double rim_radius; /**< of the outside of the rim */
+    double table[3];   /**< the table below the pot's axis */
+} plm_ground_marks;
+
+/** Sets ground[i] (count of cloud, the caller's) where a point belongs to soil, pot or table of the scene. */
+plm_status plm_ground_mark(const plm_cloud *cloud, const plm_ground_scene *scene, bool *ground, plm_ground_marks *marks,
+                           plm_error *error);
+
+/** What a point is by its place. */
+typedef enum plm_zone {
+    PLM_ZONE_FREE,  /**< not ground */
+    PLM_ZONE_NEAR,  /**< ground, but at its surface */
+    PLM_ZONE_INSIDE /**< ground, well below a surface */
+} plm_zone;
+
+/** A marking in work. */
+typedef struct plm_marker {
+    const plm_cloud *cloud;
+    const plm_ground_scene *scene;
+    double cell;
+    float (*place)[3]; /**< of each point, in the stand */
+    int32_t *patch;    /**< of each point; -1 for stray points outside of the grid */
+    float *over;       /**< of each point near the soil: height over it; INFINITY of others */
+    uint8_t *zone;     /**< of each point: plm_zone */
+    bool has_soil, has_table;
+    plm_relief soil, table;
+    double soil_slack, table_slack, wall_slack; /**< how far from a surface a point of it may lie */
+    double rim_height, inner;                   /**< top of the wall; inner radius of the rim over the outer one */
+    double rim_radius;
+} plm_marker;
+
+/** Fits soil, table and rim, and fills over and zone. */
+plm_status plm_ground_zones(plm_marker *marker, plm_error *error);
+
+enum { PLM_SHADES = 8, PLM_COLOURS = PLM_SHADES * PLM_SHADES * PLM_SHADES };
+
+/** Share of each colour that is plant, were there as much plant as ground. False where colour does not tell them apart. */
+bool plm_ground_colours(const plm_marker *marker, float plant_share[PLM_COLOURS]);
+
+static inline int plm_shade(const uint8_t rgb[3])
+{
+    const int divide = 256 / PLM_SHADES;
+    return (rgb[0] / divide * PLM_SHADES + rgb[1] / divide) * PLM_SHADES + rgb[2] / divide;
+}
+
+/** Makes ground of the pieces along soil, wall and table that do not join the plant. plant_share may be NULL. */
+plm_status plm_ground_leftovers(plm_marker *marker, const float *plant_share, plm_error *error);
+
+/** Gives the plant the foot of its stem back, and says where it stands (u, v; untouched where nothing stands). */
+plm_status plm_ground_foot(plm_marker *marker, double foot[2], plm_error *error);
+
+/** Is the place within a level's outline, widened by margin? */
+static inline bool plm_within_level(const plm_level *level, double margin, const double p[3])
+{
+    const double du = p[0] - level->centre[0], dv = p[1] - level->centre[1];
+    const double reach = plm_level_reach(level, du, dv) + margin;
+    return du * du + dv * dv <= reach * reach;
+}
+
+#endif

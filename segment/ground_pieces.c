@@ -1,0 +1,158 @@
+/* segment/ground_pieces.c: what shape and colour leave open is settled by what hangs together. Pieces along the ground
+ * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground; soil points at the foot of
+ * something that stands are its foot. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "segment/ground_mark.h"
+
+enum { FOOT_LAYERS = 4, GROUND = -1, OPEN = -2, JOIN = 2 };
+
+/* ---- Pieces --------------------------------------------------------------------------------------------------- */
+
+typedef struct pieces {
+    double *ground, *plantlike; /* of each patch: how many of its points are ground, how many have the plant's colour */
+    int32_t *piece;             /* of each patch: number of its piece, GROUND, or OPEN */
+    uint32_t *stack;
+    bool *stays;   /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
+    size_t *size;  /* of each piece, patches */
+    double *green; /* of each piece: patches of the plant's colour */
+    int32_t count;
+} pieces;
+
+/* May a patch be a left-over of the ground: close to wall, rim, soil or table? */
+static bool close_to_ground(const plm_marker *m, const double p[3])
+{
+    const plm_ground_scene *s = m->scene;
+    const double reach = 3 * m->cell;
+    if (m->has_table && plm_within_level(&s->level[s->table], reach, p) && plm_relief_over(&m->table, p) < reach)
+        return true;
+    if (!s->has_pot)
+        return plm_within_level(&s->level[s->soil], reach, p) &&
+               plm_relief_over(&m->soil, p) < fmax(reach, 3 * m->soil_slack);
+    const double radius = plm_pot_radius(&s->pot, p[2]), out = plm_pot_distance(&s->pot, p) - radius;
+    const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - s->pot.soil;
+    if (out < 0 && over < fmax(1.5 * m->cell, 2 * m->soil_slack)) return true;
+    return p[2] < m->rim_height + 1.5 * m->cell && out < fmax(reach, 0.15 * radius) && out > -0.15 * radius - reach;
+}
+
+/* Joins open patches that are at most two voxels apart. */
+static void join_patches(const plm_surfels *s, pieces *q)
+{
+    q->count = 0;
+    for (size_t start = 0; start < s->count; start++) {
+        if (q->piece[start] != OPEN) continue;
+        size_t depth = 0;
+        q->stack[depth++] = (uint32_t)start;
+        q->piece[start] = q->count;
+        while (depth) {
+            const uint32_t k = q->stack[--depth];
+            int32_t at[3];
+            for (int i = 0; i < 3; i++) at[i] = (int32_t)(s->centre[k][i] / s->cell);
+            for (int32_t x = at[0] - JOIN; x <= at[0] + JOIN; x++)
+                for (int32_t y = at[1] - JOIN; y <= at[1] + JOIN; y++)
+                    for (int32_t z = at[2] - JOIN; z <= at[2] + JOIN; z++) {
+                        if (x < 0 || y < 0 || z < 0 || x >= s->size[0] || y >= s->size[1] || z >= s->size[2]) continue;
+                        const int32_t other = s->slot[((int64_t)x * s->size[1] + y) * s->size[2] + z];
+                        if (other < 0 || q->piece[other] != OPEN) continue;
+                        q->piece[other] = q->count;
+                        q->stack[depth++] = (uint32_t)other;
+                    }
+        }
+        q->count++;
+    }
+}
+
+static void judge_pieces(const plm_marker *m, pieces *q)
+{
+    const plm_stand *t = &m->scene->stand;
+    int32_t largest = -1;
+    for (size_t k = 0; k < t->surfels->count; k++) {
+        const int32_t n = q->piece[k];
+        if (n < 0) continue;
+        q->size[n]++;
+        q->green[n] += q->plantlike[k] / t->surfels->points[k];
+        if (largest < 0 || q->size[n] > q->size[largest]) largest = n;
+        const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
+        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, p);
+    }
+    for (int32_t n = 0; n < q->count; n++)
+        if (n == largest || q->green[n] > 0.5 * (double)q->size[n]) q->stays[n] = true;
+}
+
+static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
+{
+    const plm_surfels *s = m->scene->stand.surfels;
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        const int32_t k = m->patch[i];
+        if (k < 0) continue;
+        q->ground[k] += m->zone[i] != PLM_ZONE_FREE;
+        if (plant_share) q->plantlike[k] += plant_share[plm_shade(m->cloud->rgb[i])] > 0.8f;
+    }
+    for (size_t k = 0; k < s->count; k++) q->piece[k] = q->ground[k] > 0.5 * s->points[k] ? GROUND : OPEN;
+    join_patches(s, q);
+    judge_pieces(m, q);
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
+        const int32_t n = q->piece[m->patch[i]];
+        if (n >= 0 && !q->stays[n]) m->zone[i] = PLM_ZONE_NEAR;
+    }
+}
+
+plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_error *error)
+{
+    const size_t count = m->scene->stand.surfels->count;
+    pieces q = {.ground = plm_alloc_zero(count, sizeof *q.ground, error),
+                .plantlike = plm_alloc_zero(count, sizeof *q.plantlike, error),
+                .piece = plm_alloc(count, sizeof *q.piece, error),
+                .stack = plm_alloc(count, sizeof *q.stack, error),
+                .stays = plm_alloc_zero(count, sizeof *q.stays, error),
+                .size = plm_alloc_zero(count, sizeof *q.size, error),
+                .green = plm_alloc_zero(count, sizeof *q.green, error)};
+    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green;
+    if (room) take_pieces(m, plant_share, &q);
+    plm_free(q.ground);
+    plm_free(q.plantlike);
+    plm_free(q.piece);
+    plm_free(q.stack);
+    plm_free(q.stays);
+    plm_free(q.size);
+    plm_free(q.green);
+    return room ? PLM_OK : PLM_E_MEMORY;
+}
+
+/* ---- The foot of the stem ------------------------------------------------------------------------------------- */
+
+static int64_t foot_cell(const plm_stand *t, const float p[3])
+{
+    const double cell = 0.5 * t->cell;
+    const double a = floor((p[0] - t->low[0]) / cell), b = floor((p[1] - t->low[1]) / cell);
+    if (!(a >= 0 && a < 2 * t->size[0] && b >= 0 && b < 2 * t->size[1])) return -1;
+    return (int64_t)a * (2 * t->size[1]) + (int64_t)b;
+}
+
+/* Where free points fill all layers over the soil, something stands. */
+plm_status plm_ground_foot(plm_marker *m, double foot[2], plm_error *error)
+{
+    const plm_stand *t = &m->scene->stand;
+    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
+    if (!layers) return PLM_E_MEMORY;
+    const double layer = 0.75 * m->cell;
+    double sum[2] = {0}, n = 0;
+    for (int turn = 0; turn < 2; turn++)
+        for (size_t i = 0; i < m->cloud->count; i++) {
+            const double over = m->over[i];
+            if (!(over >= -m->soil.sigma && over < m->soil_slack + FOOT_LAYERS * layer)) continue;
+            const int64_t c = foot_cell(t, m->place[i]);
+            if (c < 0) continue;
+            if (turn == 0 && m->zone[i] == PLM_ZONE_FREE && over > m->soil_slack) {
+                layers[c] |= (uint8_t)(1 << (int)((over - m->soil_slack) / layer));
+            } else if (turn == 1 && layers[c] == (1 << FOOT_LAYERS) - 1) {
+                if (m->zone[i] == PLM_ZONE_NEAR) m->zone[i] = PLM_ZONE_FREE;
+                sum[0] += m->place[i][0], sum[1] += m->place[i][1], n++;
+            }
+        }
+    plm_free(layers);
+    for (int i = 0; i < 2 && n > 0; i++) foot[i] = sum[i] / n;
+    return PLM_OK;
+}
