@@ -84,6 +84,15 @@ static level_facts facts_of(const plm_stand *t, const plm_level *level)
     return f;
 }
 
+/* Thick noise shows as two levels, one a little over the other. */
+static bool same_surface(const plm_stand *t, const plm_level *a, const plm_level *b)
+{
+    const double off =
+        plm_level_height(b, b->centre[0], b->centre[1]) - plm_level_height(a, b->centre[0], b->centre[1]);
+    const double du = b->centre[0] - a->centre[0], dv = b->centre[1] - a->centre[1];
+    return fabs(off) < fmax(3 * t->surfels->cell, 6 * a->scatter) && hypot(du, dv) < 0.5 * plm_level_reach(a, du, dv);
+}
+
 /* Is the level ground, although no pot was found? Gives a confidence, 0 for no. Bounds were set between what
  * leaves and what soils and tables show (over 90 clouds without and 60 with ground): leaves are rougher than 1.6 % of
  * their size unless small, and their normals agree to 0.96 to 0.98 unless they are flat. */
@@ -94,7 +103,7 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
     const level_facts f = facts_of(t, it);
     double largest_other = 0;
     for (int j = 0; j < levels; j++)
-        if (j != i) largest_other = fmax(largest_other, level[j].area);
+        if (j != i && !same_surface(t, it, &level[j])) largest_other = fmax(largest_other, level[j].area);
     const double rough = it->scatter / sqrt(it->area), ease = colour > 0 ? 1.5 : 1;
     if (getenv("DBG"))
         printf("      i %d colour %d rough %.4f agree %.3f below %.3f under %.3f above %.3f height %.2f inward %.2f "
@@ -102,7 +111,9 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
                i, colour, rough, it->agreement, f.below, f.under, f.above, f.height, f.inward, f.over, f.reach,
                it->area / fmax(largest_other, 1e-30));
     if (sqrt(it->area) < 12 * t->surfels->cell) return 0;
-    if (rough > (colour < 0 ? 0.02 : 0.025 * ease) || it->agreement < (colour > 0 ? 0.95 : 0.962)) return 0;
+    /* Where the normals agree well the roughness is noise, not shape. */
+    if (rough > (it->agreement > 0.99 ? 0.05 : colour < 0 ? 0.02 : 0.025 * ease)) return 0;
+    if (it->agreement < (colour > 0 ? 0.95 : 0.962)) return 0;
     if (it->area < (colour > 0 ? 1.5 : colour < 0 ? 4 : 3) * largest_other) return 0;
     if (f.below > 0.03 * ease || f.under > 0.10 * ease) return 0;
     if (f.above < 0.01 || f.height < 0.05 || f.inward < 0.3 || f.over < 0.2) return 0;

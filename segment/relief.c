@@ -1,11 +1,11 @@
-/* segment/relief.c: soil is not a plane. Means of the points in raster cells, in rounds with a band that shrinks to the
- * noise, so that leaves just above are left out. */
+/* segment/relief.c: soil is not a plane. Means of the points in raster cells, in rounds with a band that follows
+ * the noise, so that leaves just above are left out. */
 #include "segment/relief.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { ROUNDS = 4, BINS = 256, MOST = 150000 };
+enum { ROUNDS = 5, BINS = 256, MOST = 150000 };
 
 static const double cells_of_patches = 4; /* a raster cell is four voxels wide */
 static const double fewest = 6;           /* points that make a cell's height */
@@ -25,7 +25,7 @@ double plm_relief_over(const plm_relief *r, const double p[3])
     return base - (near * (1 - part[0]) + far * part[0]);
 }
 
-/* Standard deviation from the median of |distance|, found in a histogram up to band. */
+/* Standard deviation from the median of distances to one side, found in a histogram up to band. */
 static double robust_sigma(const size_t histogram[BINS], double band)
 {
     size_t total = 0, sum = 0;
@@ -78,7 +78,7 @@ static double fit_round(const float (*place)[3], const uint32_t *chosen, size_t 
         const size_t c = (size_t)a * (size_t)r->size[1] + (size_t)b;
         sum[c] += over;
         weight[c]++;
-        histogram[(int)(fabs(over) / band * BINS)]++;
+        if (over <= 0) histogram[(int)(-over / band * BINS)]++; /* what lies above may be a plant */
     }
     for (size_t c = 0; c < cells; c++) {
         const bool known = weight[c] >= fewest;
@@ -134,10 +134,11 @@ plm_status plm_relief_fit(const plm_stand *stand, const float (*place)[3], size_
     uint32_t *chosen = plm_alloc(count, sizeof *chosen, error);
     const bool room = r.height && sum && weight && chosen;
     if (room) {
-        const size_t n = choose(place, count, plane, band, filter, context, chosen);
+        const double widest = 2 * band; /* thick noise may want more than the band that it starts with */
+        const size_t n = choose(place, count, plane, widest, filter, context, chosen);
         for (int round = 0; round < ROUNDS; round++) {
             r.sigma = fit_round(place, chosen, n, band, &r, sum, weight);
-            band = fmin(band, fmax(3 * r.sigma, 0.25 * stand->surfels->cell));
+            band = fmin(widest, fmax(3 * r.sigma, 0.25 * stand->surfels->cell));
         }
         *relief = r;
     } else {
