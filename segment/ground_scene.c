@@ -5,8 +5,6 @@
 #include "segment/ground_scene.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cloud/linear.h"
@@ -105,11 +103,6 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
     for (int j = 0; j < levels; j++)
         if (j != i && !same_surface(t, it, &level[j])) largest_other = fmax(largest_other, level[j].area);
     const double rough = it->scatter / sqrt(it->area), ease = colour > 0 ? 1.5 : 1;
-    if (getenv("DBG"))
-        printf("      i %d colour %d rough %.4f agree %.3f below %.3f under %.3f above %.3f height %.2f inward %.2f "
-               "over %.2f reach %.2f area/other %.2f\n",
-               i, colour, rough, it->agreement, f.below, f.under, f.above, f.height, f.inward, f.over, f.reach,
-               it->area / fmax(largest_other, 1e-30));
     if (sqrt(it->area) < 12 * t->surfels->cell) return 0;
     /* Where the normals agree well the roughness is noise, not shape. */
     if (rough > (it->agreement > 0.99 ? 0.05 : colour < 0 ? 0.02 : 0.025 * ease)) return 0;

@@ -22,9 +22,7 @@ static void trimmed_range(const plm_cloud *cloud, int axis, float low, float hig
     range[0] = low;
     range[1] = high;
     for (int look = 0; look < 2 && range[1] > range[0]; look++) {
-        static const size_t none = 0;
-        size_t histogram[BINS];
-        for (int b = 0; b < BINS; b++) histogram[b] = none;
+        size_t histogram[BINS] = {0};
         const double origin = range[0], scale = BINS / (range[1] - range[0]);
         for (size_t i = 0; i < cloud->count; i++) {
             const double place = ((double)cloud->xyz[i][axis] - origin) * scale;

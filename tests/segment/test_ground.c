@@ -1,0 +1,283 @@
+/* Ground: pots, soil and tables are found, points told apart, and nothing is claimed where there is no ground. */
+#include "support/test.h"
+
+#include "cloud/linear.h"
+#include "io/io.h"
+#include "segment/segment.h"
+#include "support/scene.h"
+
+static const test_scene plain = {
+    .points = 200000, .leaf_length = 0.35, .noise = 0.001, .outliers = 0.004, .spacing = 0.007, .seed = 5};
+
+typedef struct outcome {
+    double iou, kept; /* of ground; share of the plant's points that stay */
+    plm_ground ground;
+} outcome;
+
+static outcome find(const plm_cloud *cloud)
+{
+    plm_error error = {0};
+    outcome o = {0};
+    uint8_t *label = calloc(cloud->count + 1, 1);
+    assert_ok(plm_find_ground(cloud, PLM_GROUND_AUTO, 0, label, &o.ground, &error));
+    double both = 0, either = 0, plant = 0, kept = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        const bool truth = cloud->label[i] == PLM_LABEL_GROUND, said = label[i] == PLM_LABEL_GROUND;
+        if (cloud->label[i] == PLM_LABEL_OTHER) continue; /* strays near the ground have no right answer */
+        both += truth && said;
+        either += truth || said;
+        plant += !truth;
+        kept += !truth && !said;
+    }
+    o.iou = either > 0 ? both / either : 1;
+    o.kept = plant > 0 ? kept / plant : 1;
+    free(label);
+    return o;
+}
+
+static outcome find_in(const test_scene *scene)
+{
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(test_scene_make(scene, &cloud, &error));
+    const outcome o = find(&cloud);
+    plm_cloud_free(&cloud);
+    return o;
+}
+
+/* The bars are the goal of the module: 0.97 of the ground, 0.995 of the plant. */
+static void assert_good(outcome o, const char *what)
+{
+    if (!o.ground.found || o.iou < 0.97 || o.kept < 0.995)
+        fail_msg("%s: found %d, IoU %.4f, plant kept %.4f", what, o.ground.found, o.iou, o.kept);
+}
+
+static void a_pot_is_told_from_the_plant(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < 4; i++) {
+        test_scene s = plain;
+        s.pot_radius = 0.25, s.pot_height = 0.4, s.rim = i & 1 ? 0.04 : 0, s.square = i > 1;
+        const outcome o = find_in(&s);
+        assert_good(o, s.square ? "square pot" : "round pot");
+        assert_true(o.ground.has_pot && !o.ground.has_table);
+        assert_near(o.ground.soil_height, 0, 0.01); /* half the pot's spacing of patches */
+        assert_near(o.ground.rim_height, s.rim, 0.012);
+        if (!s.square) assert_near(o.ground.pot_diameter, 0.5, 0.01); /* 2 % */
+        assert_near(hypot(o.ground.pot_centre[0], o.ground.pot_centre[1]), 0, 0.01);
+    }
+}
+
+static void a_pot_on_a_table_is_told_from_both(void **unused)
+{
+    (void)unused;
+    test_scene s = plain;
+    s.pot_radius = 0.22, s.pot_height = 0.35, s.rim = 0.03, s.table_radius = 0.45;
+    const outcome o = find_in(&s);
+    assert_good(o, "pot on a table");
+    assert_true(o.ground.has_pot && o.ground.has_table);
+    assert_near(o.ground.table_height, 0.03 - 0.35, 0.01);
+}
+
+static void soil_without_a_pot_is_found(void **unused)
+{
+    (void)unused;
+    test_scene s = plain;
+    s.table_radius = 0.5;
+    for (int i = 0; i < 3; i++) {
+        s.noise = 0.002 * i;
+        const outcome o = find_in(&s);
+        assert_good(o, "soil");
+        assert_false(o.ground.has_pot);
+        assert_near(o.ground.soil_height, 0, 0.01);
+    }
+}
+
+static void a_rosette_over_the_rim_stays_a_plant(void **unused)
+{
+    (void)unused;
+    test_scene s = plain;
+    s.rosette = true, s.leaf_length = 0.3, s.pot_radius = 0.25, s.pot_height = 0.4, s.spacing = 0.005;
+    const outcome o = find_in(&s);
+    assert_true(o.ground.found && o.ground.has_pot);
+    assert_true(o.iou > 0.97 && o.kept > 0.99); /* petioles start in the soil */
+}
+
+static void plants_without_ground_claim_none(void **unused)
+{
+    (void)unused;
+    for (int i = 0; i < 8; i++) {
+        test_scene s = plain;
+        s.rosette = i & 1, s.flat_leaves = i & 2, s.leaf_length = i & 4 ? 0.5 : 0.3;
+        const outcome o = find_in(&s);
+        if (o.ground.found) fail_msg("case %d: ground was claimed", i);
+    }
+    test_scene s = plain;
+    s.leaf_length = 0;
+    assert_false(find_in(&s).ground.found); /* a bare stem */
+}
+
+static void colour_is_not_needed_and_not_trusted(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    test_scene s = plain;
+    s.pot_radius = 0.25, s.pot_height = 0.4, s.rim = 0.04, s.table_radius = 0.5;
+    for (int i = 0; i < 3; i++) {
+        plm_cloud cloud;
+        assert_ok(test_scene_make(&s, &cloud, &error));
+        uint64_t state = 9;
+        for (size_t k = 0; k < cloud.count && i < 2; k++)
+            for (int c = 0; c < 3; c++)
+                cloud.rgb[k][c] = (uint8_t)(i ? (c == 1 ? 140 : 60) : 255 * test_uniform(&state));
+        if (i == 2) {
+            plm_free(cloud.rgb);
+            cloud.rgb = NULL;
+        }
+        assert_good(find(&cloud), i == 0 ? "noise for colour" : i == 1 ? "all green" : "no colour");
+        plm_cloud_free(&cloud);
+    }
+}
+
+/* A scene in any unit, far from the origin, a little tilted, in any order of rows: the same points are ground. */
+static void unit_place_tilt_and_order_change_nothing(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    test_scene s = plain;
+    s.pot_radius = 0.25, s.pot_height = 0.4, s.rim = 0.04, s.table_radius = 0.5, s.points = 60000, s.spacing = 0.012;
+    plm_cloud cloud;
+    assert_ok(test_scene_make(&s, &cloud, &error));
+    assert_good(find(&cloud), "as it is");
+    const size_t n = cloud.count;
+    uint8_t *label = calloc(n, 1), *other = calloc(n, 1);
+    uint32_t *order = malloc(n * sizeof *order);
+    plm_ground ground;
+    assert_ok(plm_find_ground(&cloud, PLM_GROUND_AUTO, 0, label, &ground, &error));
+    uint64_t state = 3;
+    for (size_t i = 0; i < n; i++) order[i] = (uint32_t)i;
+    for (size_t i = n - 1; i > 0; i--) {
+        const size_t j = (size_t)(test_uniform(&state) * (double)(i + 1));
+        const uint32_t swap = order[i];
+        order[i] = order[j];
+        order[j] = swap;
+    }
+    plm_cloud shuffled;
+    plm_ground again;
+    assert_ok(plm_cloud_select(&cloud, order, n, &shuffled, &error));
+    assert_ok(plm_find_ground(&shuffled, PLM_GROUND_AUTO, 0, other, &again, &error));
+    size_t different = 0;
+    for (size_t i = 0; i < n; i++) different += label[order[i]] != other[i];
+    assert_int_equal(different, 0);
+    assert_near(again.soil_height, ground.soil_height, 1e-6);
+    for (int i = 0; i < 3; i++) {
+        const double scale = i == 0 ? 1000 : i == 1 ? 1e-3 : 1, tilt = i == 2 ? plm_radians(6) : 0;
+        for (size_t k = 0; k < n; k++) {
+            const float x = shuffled.xyz[k][0], z = shuffled.xyz[k][2];
+            cloud.xyz[k][0] = (float)(scale * (x * cos(tilt) + z * sin(tilt)));
+            cloud.xyz[k][1] = (float)(scale * shuffled.xyz[k][1]);
+            cloud.xyz[k][2] = (float)(scale * (z * cos(tilt) - x * sin(tilt)));
+            cloud.label[k] = shuffled.label[k];
+            memcpy(cloud.rgb[k], shuffled.rgb[k], 3);
+        }
+        cloud.origin[0] = 478700, cloud.origin[1] = 5427000, cloud.origin[2] = 300;
+        const outcome o = find(&cloud);
+        assert_good(o, i == 0 ? "mm" : i == 1 ? "km" : "tilted");
+        assert_near(o.ground.soil_height, 300, 0.012 * scale);
+    }
+    free(order);
+    free(label);
+    free(other);
+    plm_cloud_free(&shuffled);
+    plm_cloud_free(&cloud);
+}
+
+static void clouds_without_shape_do_no_harm(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    uint64_t state = 4;
+    for (int kind = 0; kind < 6; kind++)
+        for (size_t count = 0; count <= 4000; count = count < 20 ? count + 1 : count * 200) {
+            plm_cloud cloud;
+            assert_ok(plm_cloud_create(count, PLM_HAS_LABEL, &cloud, &error));
+            for (size_t i = 0; i < count; i++) {
+                const double u = test_uniform(&state), v = test_uniform(&state), w = test_uniform(&state);
+                const double side = floor(3 * u),
+                             p[6][3] = {
+                                 {1, 2, 3},
+                                 {u, 0, 0},
+                                 {0, 0, u},
+                                 {u, v, 0},
+                                 {0, u, v},
+                                 {side == 0 ? v > 0.5 : v, side == 1 ? w > 0.5 : w, side == 2 ? (v + w > 1) : u}};
+                for (int a = 0; a < 3; a++) cloud.xyz[i][a] = (float)p[kind][a];
+                cloud.label[i] = PLM_LABEL_LEAF;
+            }
+            assert_false(find(&cloud).ground.found); /* a plane alone is no ground: nothing stands on it */
+            plm_cloud_free(&cloud);
+        }
+}
+
+static void height_and_none_do_as_they_say(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(3, 0, &cloud, &error));
+    cloud.origin[2] = 100;
+    for (int i = 0; i < 3; i++) cloud.xyz[i][0] = cloud.xyz[i][1] = 0, cloud.xyz[i][2] = (float)i;
+    uint8_t label[3] = {PLM_LABEL_LEAF, PLM_LABEL_LEAF, PLM_LABEL_LEAF};
+    plm_ground ground;
+    assert_ok(plm_find_ground(&cloud, PLM_GROUND_NONE, 0, label, &ground, &error));
+    assert_false(ground.found);
+    assert_ok(plm_find_ground(&cloud, PLM_GROUND_HEIGHT, 101.5, label, &ground, &error));
+    assert_true(ground.found && ground.soil_height == 101.5);
+    const uint8_t expected[3] = {PLM_LABEL_GROUND, PLM_LABEL_GROUND, PLM_LABEL_LEAF};
+    assert_memory_equal(label, expected, 3);
+    assert_int_equal(plm_find_ground(&cloud, PLM_GROUND_HEIGHT, NAN, label, &ground, &error), PLM_E_ARGUMENT);
+    plm_cloud_free(&cloud);
+}
+
+static void clouds_with_known_truth_keep_their_plants(void **unused)
+{
+    (void)unused;
+    static const char *with[] = {"arabidopsis_24_rgbd_pot", "pepper_22_rgbd_pot", "okra_32_3dgs"};
+    static const char *without[] = {"cucumber_14_clean", "cucumber_23_rgbd",    "soybean_33_splat",
+                                    "eggplant_11_3dgs",  "maize_15_clean",      "tomato_16_clean",
+                                    "okra_13_clean",     "single_leaf_35_clean"};
+    const char *folder = test_data_folder();
+    if (!folder) skip();
+    plm_error error = {0};
+    for (size_t i = 0; i < COUNT(with) + COUNT(without); i++) {
+        const char *name = i < COUNT(with) ? with[i] : without[i - COUNT(with)];
+        char path[600];
+        snprintf(path, sizeof path, "%s/dev/%s.labelled.ply", folder, name);
+        plm_cloud cloud;
+        assert_ok(plm_cloud_read(path, &(plm_read_options){.label_field = "label"}, &cloud, NULL, &error));
+        assert_non_null(cloud.label);
+        const outcome o = find(&cloud);
+        if (i < COUNT(with))
+            assert_good(o, name);
+        else if (o.ground.found)
+            fail_msg("%s: ground was claimed", name);
+        plm_cloud_free(&cloud);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pot_is_told_from_the_plant),
+        cmocka_unit_test(a_pot_on_a_table_is_told_from_both),
+        cmocka_unit_test(soil_without_a_pot_is_found),
+        cmocka_unit_test(a_rosette_over_the_rim_stays_a_plant),
+        cmocka_unit_test(plants_without_ground_claim_none),
+        cmocka_unit_test(colour_is_not_needed_and_not_trusted),
+        cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
+        cmocka_unit_test(clouds_without_shape_do_no_harm),
+        cmocka_unit_test(height_and_none_do_as_they_say),
+        cmocka_unit_test(clouds_with_known_truth_keep_their_plants),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
