@@ -33,16 +33,6 @@ configure_file(${PROJECT_SOURCE_DIR}/cmake/plantimeter.pc.in ${PROJECT_BINARY_DI
 install(FILES ${PROJECT_BINARY_DIR}/plantimeter.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# The program prints its own manual page and completion.
-add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/generated/plantimeter.1 ${PROJECT_BINARY_DIR}/generated/completion
-                   COMMAND plantimeter help --man > ${PROJECT_BINARY_DIR}/generated/plantimeter.1
-                   COMMAND plantimeter help --completion > ${PROJECT_BINARY_DIR}/generated/completion
-                   DEPENDS plantimeter VERBATIM)
-add_custom_target(manual ALL DEPENDS ${PROJECT_BINARY_DIR}/generated/plantimeter.1)
-install(FILES ${PROJECT_BINARY_DIR}/generated/plantimeter.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${PROJECT_BINARY_DIR}/generated/completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-        RENAME plantimeter)
-
 # The manual page and the completion are printed by the program from its own option tables.
 set(manual ${PROJECT_BINARY_DIR}/plantimeter.1)
 set(completion ${PROJECT_BINARY_DIR}/plantimeter.bash)

@@ -6,6 +6,8 @@
 
 #include "cloud/cloud.h"
 
+#include <jansson.h>
+
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /** What the program's exit codes mean. */
@@ -37,6 +39,7 @@ typedef struct plm_option {
     plm_option_kind kind;
     size_t offset;           /**< of its field in the settings */
     double minimum, maximum; /**< of numbers, integers and lengths; both 0: any */
+    bool changes_nothing;    /**< in the results: where they go, how many threads, what is told */
 } plm_option;
 
 /** One sub-command. */
@@ -46,9 +49,19 @@ typedef struct plm_command {
     const char *description; /**< paragraphs for --help and the manual, separated by empty lines; may be NULL */
     const plm_option *options;
     size_t option_count;
+    const plm_option *shared; /**< options that other commands have too; may be NULL */
+    size_t shared_count;
+    size_t shared_offset; /**< where their settings lie in the command's settings */
     /** argv[0] is the command's name. Gives the exit code. */
     int (*run)(int argc, char **argv);
 } plm_command;
+
+/** Options of a command, its own and the shared ones. */
+size_t plm_option_total(const plm_command *command);
+const plm_option *plm_option_at(const plm_command *command, size_t i);
+
+/** Where an option's value lies in a command's settings. */
+void *plm_option_field(const plm_command *command, const plm_option *option, void *settings);
 
 /** The table of sub-commands. */
 const plm_command *const *plm_commands(size_t *count);
@@ -59,6 +72,9 @@ const plm_command *plm_command_find(const char *name);
  * flags in one word, options behind operands, -- ends them, "-" is an operand. Gives -1 when the command should go on,
  * else the exit code: help was printed, or the usage is wrong and was told. */
 int plm_parse_options(const plm_command *command, int *argc, char **argv, void *settings);
+
+/** The options that change results, with their values, for run.json; the caller's. */
+plm_status plm_options_json(const plm_command *command, void *settings, json_t **object, plm_error *error);
 
 /** Reads a length as an option does: "20mm", "2 cm", "0.02". PLM_E_ARGUMENT says what was expected. */
 plm_status plm_parse_length(const char *text, double *metres, plm_error *error);

@@ -4,8 +4,11 @@
 #include <string.h>
 
 static const plm_command *const commands[] = {
-    &plm_command_traits,
-    &plm_command_simulate,
+    &plm_command_measure,  //
+    &plm_command_plan,     //
+    &plm_command_info,     //
+    &plm_command_traits,   //
+    &plm_command_simulate, //
     &plm_command_help,
 };
 

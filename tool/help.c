@@ -53,7 +53,10 @@ void plm_print_help(const plm_command *command)
     }
     printf("\nOptions:\n");
     for (size_t i = 0; i < command->option_count; i++) print_option(&command->options[i]);
-    const plm_option help = {'h', "help", NULL, "print this help", PLM_OPTION_FLAG, 0, 0, 0};
+    if (command->shared_count) printf("\nOptions about the input:\n");
+    for (size_t i = 0; i < command->shared_count; i++) print_option(&command->shared[i]);
+    printf("\n");
+    const plm_option help = {.letter = 'h', .name = "help", .help = "print this help", .kind = PLM_OPTION_FLAG};
     print_option(&help);
 }
 

@@ -41,7 +41,7 @@ static void print_roff_command(const plm_command *command)
         printf(".PP\n");
         print_roff(command->description);
     }
-    for (size_t i = 0; i < command->option_count; i++) print_roff_option(&command->options[i]);
+    for (size_t i = 0; i < plm_option_total(command); i++) print_roff_option(plm_option_at(command, i));
 }
 
 void plm_print_manual(void)
@@ -66,8 +66,8 @@ void plm_print_manual(void)
 static void print_completion_of(const plm_command *command)
 {
     printf("        %s)\n            case $previous in\n", command->name);
-    for (size_t i = 0; i < command->option_count; i++) {
-        const plm_option *option = &command->options[i];
+    for (size_t i = 0; i < plm_option_total(command); i++) {
+        const plm_option *option = plm_option_at(command, i);
         if (option->kind == PLM_OPTION_CHOICE) {
             printf("                --%s) words=\"", option->name);
             for (const char *at = option->argument; *at; at++) putchar(*at == '|' ? ' ' : *at);
@@ -77,7 +77,7 @@ static void print_completion_of(const plm_command *command)
         }
     }
     printf("                *) words=\"--help");
-    for (size_t i = 0; i < command->option_count; i++) printf(" --%s", command->options[i].name);
+    for (size_t i = 0; i < plm_option_total(command); i++) printf(" --%s", plm_option_at(command, i)->name);
     printf("\" ;;\n            esac ;;\n");
 }
 

@@ -120,9 +120,8 @@ static plm_status parse_choice(const plm_option *option, const char *text, int *
     return plm_fail(error, PLM_E_ARGUMENT, "\"%s\" is none of %s", text, option->argument);
 }
 
-static plm_status store(const plm_option *option, const char *text, void *settings, plm_error *error)
+static plm_status store(const plm_option *option, const char *text, void *field, plm_error *error)
 {
-    void *field = (char *)settings + option->offset;
     plm_status status = PLM_OK;
     switch (option->kind) {
         case PLM_OPTION_FLAG:
@@ -149,9 +148,19 @@ static plm_status store(const plm_option *option, const char *text, void *settin
 
 /* ---- Names ----------------------------------------------------------------------------------------------------- */
 
-static const char *option_name(const void *table, size_t i)
+size_t plm_option_total(const plm_command *command)
 {
-    return ((const plm_option *)table)[i].name;
+    return command->option_count + command->shared_count;
+}
+
+const plm_option *plm_option_at(const plm_command *command, size_t i)
+{
+    return i < command->option_count ? &command->options[i] : &command->shared[i - command->option_count];
+}
+
+static const char *option_name(const void *command, size_t i)
+{
+    return plm_option_at(command, i)->name;
 }
 
 /* The option of a long name of the given length: the name itself or an unambiguous beginning of it. NULL: told. */
@@ -159,8 +168,8 @@ static const plm_option *find_long(const plm_command *command, const char *name,
 {
     const plm_option *found = NULL;
     size_t found_count = 0;
-    for (size_t i = 0; i < command->option_count; i++) {
-        const plm_option *option = &command->options[i];
+    for (size_t i = 0; i < plm_option_total(command); i++) {
+        const plm_option *option = plm_option_at(command, i);
         if (strncmp(option->name, name, length)) continue;
         if (strlen(option->name) == length) return option;
         found = option;
@@ -173,7 +182,7 @@ static const plm_option *find_long(const plm_command *command, const char *name,
         plm_usage_error(command, "option --%s is ambiguous", word);
         return NULL;
     }
-    const char *nearest = plm_nearest_name(word, option_name, command->options, command->option_count);
+    const char *nearest = plm_nearest_name(word, option_name, command, plm_option_total(command));
     if (nearest)
         plm_usage_error(command, "unknown option --%s; did you mean --%s?", word, nearest);
     else
@@ -183,10 +192,17 @@ static const plm_option *find_long(const plm_command *command, const char *name,
 
 static const plm_option *find_letter(const plm_command *command, char letter)
 {
-    for (size_t i = 0; i < command->option_count; i++)
-        if (command->options[i].letter == letter) return &command->options[i];
+    for (size_t i = 0; i < plm_option_total(command); i++)
+        if (plm_option_at(command, i)->letter == letter) return plm_option_at(command, i);
     plm_usage_error(command, "unknown option -%c", letter);
     return NULL;
+}
+
+void *plm_option_field(const plm_command *command, const plm_option *option, void *settings)
+{
+    const bool is_shared =
+        command->shared_count && option >= command->shared && option < command->shared + command->shared_count;
+    return (char *)settings + (is_shared ? command->shared_offset : 0) + option->offset;
 }
 
 /* ---- The command line ------------------------------------------------------------------------------------------ */
@@ -208,7 +224,7 @@ static bool give(parser *p, const plm_option *option, const char *value)
         }
         value = p->argv[++p->at];
     }
-    if (store(option, value, p->settings, &error) == PLM_OK) return true;
+    if (store(option, value, plm_option_field(p->command, option, p->settings), &error) == PLM_OK) return true;
     plm_usage_error(p->command, "--%s: %s", option->name, error.message);
     return false;
 }

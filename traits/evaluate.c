@@ -6,6 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/** Needs that rest on organs. */
+static const unsigned needs_organs = PLM_NEEDS_ORGANS | PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS;
+
 /** One call to make: a trait of an organ (NULL: of the plant, or of a level that has no organ). */
 typedef struct call {
     const plm_trait *trait;
@@ -51,6 +54,8 @@ static bool is_out_of_reach(const plm_scene *scene, const call *made, plm_estima
         plm_not_applicable(out, "the cloud has no colour");
     else if (scene->plant_count == 0)
         plm_not_applicable(out, "no point of the cloud belongs to the plant");
+    else if (scene->organ_reason[0] && (trait->needs & needs_organs))
+        plm_trait_failed(out, "%s", scene->organ_reason);
     else if (trait->level != PLM_PLANT && !made->organ)
         plm_not_applicable(out, "the plant has no %s", plm_level_name(trait->level));
     return out->state != PLM_STATE_OK;

@@ -77,6 +77,20 @@ static plm_status run_index(plant_job *job, plm_error *error)
     return plm_scene_index(&job->scene, error);
 }
 
+/* A plant that cannot be cut into organs still has a height. */
+static plm_status run_segment(plant_job *job, plm_error *error)
+{
+    const plm_segment_options options = {.habit = job->options->habit, .seed = job->options->seed};
+    plm_error trouble = {0};
+    const plm_status status = plm_segment(job->cloud, job->label, job->keep, &options, &job->segmentation, &trouble);
+    if (status == PLM_E_DEGENERATE) {
+        snprintf(job->scene.organ_reason, sizeof job->scene.organ_reason, "%.150s", trouble.message);
+        return PLM_OK;
+    }
+    if (status != PLM_OK) return plm_fail(error, status, "%s", trouble.message);
+    return job->segmentation.warning[0] ? warn(job, error, "%s", job->segmentation.warning) : PLM_OK;
+}
+
 /* Labels that came with the cloud, as if they had been found. */
 static plm_status take_labels(plant_job *job, plm_error *error)
 {
@@ -106,8 +120,21 @@ static plm_status run_organs(plant_job *job, plm_error *error)
     for (size_t i = 0; i < job->scene.organ_count; i++) count[job->scene.organ[i].label]++;
     job->segmentation.stem_count = count[PLM_LABEL_STEM];
     job->segmentation.petiole_count = count[PLM_LABEL_PETIOLE];
-    if (job->has_labels) job->segmentation.leaf_count = count[PLM_LABEL_LEAF];
+    job->segmentation.leaf_count = count[PLM_LABEL_LEAF];
     return status;
+}
+
+/* Points without a hull (too few, all on one line) leave the reason to the traits that want it. */
+static plm_status run_hull(plant_job *job, plm_error *error)
+{
+    plm_scene *scene = &job->scene;
+    plm_error trouble = {0};
+    scene->hull_status = plm_convex_hull((const float(*)[3])scene->plant, scene->plant_count, &scene->hull_volume,
+                                         &scene->hull_area, &scene->hull, &trouble);
+    if (scene->hull_status == PLM_E_MEMORY || scene->hull_status == PLM_E_LIBRARY)
+        return plm_fail(error, scene->hull_status, "%s", trouble.message);
+    snprintf(scene->hull_reason, sizeof scene->hull_reason, "%.150s", trouble.message);
+    return PLM_OK;
 }
 
 static plm_status run_traits(plant_job *job, plm_error *error)
@@ -118,10 +145,8 @@ static plm_status run_traits(plant_job *job, plm_error *error)
 /* ---- Running them ---------------------------------------------------------------------------------------------- */
 
 static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
-    [PLM_STAGE_FRAME] = run_frame,
-    [PLM_STAGE_INDEX] = run_index,
-    [PLM_STAGE_ORGANS] = run_organs,
-    [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_FRAME] = run_frame,   [PLM_STAGE_INDEX] = run_index, [PLM_STAGE_SEGMENT] = run_segment,
+    [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_HULL] = run_hull,   [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)
@@ -220,11 +245,7 @@ static void turn_centroids_back(plm_measurement *draft)
 static void free_job(plant_job *job)
 {
     plm_scene_free(&job->scene);
-    plm_segmentation *segmentation = &job->segmentation;
-    plm_free(segmentation->label);
-    plm_free(segmentation->organ);
-    plm_free(segmentation->leaflet);
-    plm_free(segmentation->leaf_flags);
+    plm_segmentation_free(&job->segmentation);
     plm_free(job->keep);
     plm_free(job->label);
     plm_free(job->order);
@@ -262,10 +283,7 @@ void plm_measurement_free(plm_measurement *measurement)
     if (!measurement) return;
     plm_free(measurement->value);
     plm_free(measurement->warning);
-    plm_free(measurement->segmentation.label);
-    plm_free(measurement->segmentation.organ);
-    plm_free(measurement->segmentation.leaflet);
-    plm_free(measurement->segmentation.leaf_flags);
+    plm_segmentation_free(&measurement->segmentation);
     plm_cloud_free(&measurement->cloud);
     plm_mesh_free(&measurement->leaves);
     plm_mesh_free(&measurement->hull);

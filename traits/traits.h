@@ -128,6 +128,29 @@ typedef struct plm_plan {
 PLM_API plm_status plm_plan_make(const plm_measure_options *options, unsigned attributes, plm_plan *plan,
                                  plm_error *error);
 
+/* ---- The unit of a file ----------------------------------------------------------------------------------------- */
+
+/** How many metres the unit of a file is, and how that is known. */
+typedef struct plm_scale {
+    double metres_per_unit;
+    const char *unit;   /**< "m", "cm", "mm", "?": static text */
+    bool is_doubtful;   /**< the size is none that a plant has in metres: the user should be told evidence */
+    char evidence[192]; /**< in words */
+} plm_scale;
+
+/** Guesses the unit: metres where the size is one that plants have, else millimetres or centimetres by the spacing of
+ * the points. PLM_E_DEGENERATE for an empty cloud. */
+PLM_API plm_status plm_scale_guess(const plm_cloud *cloud, plm_scale *scale, plm_error *error);
+
+/** The scale from two points of the file, in its unit, whose distance in metres is known. PLM_E_ARGUMENT. */
+PLM_API plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_scale *scale,
+                                       plm_error *error);
+
+/** Multiplies coordinates, origin and extents by factor, in place. */
+PLM_API void plm_cloud_rescale(plm_cloud *cloud, double factor);
+
+/* ---- Measuring --------------------------------------------------------------------------------------------------- */
+
 /** One row of traits.csv. */
 typedef struct plm_trait_value {
     const plm_trait *trait;

@@ -1,0 +1,359 @@
+/* reports/run_json.c: run.json, and the object that `measure --json` prints. */
+#include "reports/run_json.h"
+
+#include <math.h>
+#include <string.h>
+
+/** Nine digits, as in the tables. */
+enum { DUMP_FLAGS = JSON_INDENT(1) | JSON_REAL_PRECISION(9) };
+
+static void *seam_alloc(size_t size)
+{
+    return plm_alloc(size, 1, NULL);
+}
+
+void plm_json_use_seam(void)
+{
+    json_set_alloc_funcs(seam_alloc, plm_free);
+}
+
+plm_status plm_json_check(const json_t *object, plm_error *error)
+{
+    return object ? PLM_OK : plm_fail(error, PLM_E_MEMORY, "out of memory while writing JSON");
+}
+
+/* null for what JSON cannot say. */
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+/* How many bytes of UTF-8 begin at text: 0 where there are none (overlong forms and surrogates are left to jansson). */
+static size_t sequence_length(const unsigned char *text)
+{
+    const size_t length = text[0] < 0x80   ? 1
+                          : text[0] < 0xc2 ? 0
+                          : text[0] < 0xe0 ? 2
+                          : text[0] < 0xf0 ? 3
+                          : text[0] < 0xf5 ? 4
+                                           : 0;
+    for (size_t i = 1; i < length; i++)
+        if ((text[i] & 0xc0) != 0x80) return 0;
+    return length;
+}
+
+/* A text of the user's: names of files and fields may hold bytes that are no UTF-8; JSON may not. */
+static json_t *user_text(const char *text)
+{
+    json_t *whole = json_string(text);
+    if (whole) return whole;
+    char *clean = plm_strdup(text, NULL);
+    if (!clean) return NULL;
+    for (unsigned char *at = (unsigned char *)clean; *at;) {
+        const size_t length = sequence_length(at);
+        if (length == 0) *at = '?';
+        at += length ? length : 1;
+    }
+    json_t *made = json_string(clean);
+    for (char *at = clean; !made && *at; at++) /* a form that only jansson refuses */
+        if (*at & 0x80) *at = '?';
+    if (!made) made = json_string(clean);
+    plm_free(clean);
+    return made;
+}
+
+/** An object under way; a part that could not be made or stored is remembered. */
+typedef struct builder {
+    json_t *object;
+    bool is_broken;
+} builder;
+
+static builder begin_object(void)
+{
+    json_t *object = json_object();
+    return (builder){.object = object, .is_broken = !object};
+}
+
+static void set(builder *b, const char *key, json_t *value)
+{
+    if (json_object_set_new(b->object, key, value) != 0) b->is_broken = true;
+}
+
+static void append(json_t *array, bool *is_broken, json_t *value)
+{
+    if (json_array_append_new(array, value) != 0) *is_broken = true;
+}
+
+/* The object, or NULL when a part of it is missing. */
+static json_t *finish(builder *b)
+{
+    if (!b->is_broken) return b->object;
+    json_decref(b->object);
+    return NULL;
+}
+
+static json_t *finish_array(json_t *array, bool is_broken)
+{
+    if (array && !is_broken) return array;
+    json_decref(array);
+    return NULL;
+}
+
+/* ---- The record of a plant -------------------------------------------------------------------------------------- */
+
+static json_t *rotation_json(const plm_frame *frame)
+{
+    json_t *rows = json_array();
+    bool is_broken = false;
+    for (int row = 0; row < 3; row++) {
+        json_t *cells = json_array();
+        for (int column = 0; column < 3; column++) append(cells, &is_broken, number(frame->rotation[row][column]));
+        append(rows, &is_broken, cells);
+    }
+    return finish_array(rows, is_broken);
+}
+
+static json_t *frame_json(const plm_frame *frame)
+{
+    static const char *const up[] = {"tilted", "x", "y", "z", "-x", "-y", "-z"};
+    builder b = begin_object();
+    set(&b, "up", json_string(up[frame->up]));
+    set(&b, "rotation", rotation_json(frame));
+    set(&b, "confidence", number(frame->confidence));
+    set(&b, "evidence", json_string(frame->evidence));
+    return finish(&b);
+}
+
+static json_t *ground_json(const plm_ground *ground)
+{
+    builder b = begin_object();
+    set(&b, "found", json_boolean(ground->found));
+    if (ground->found) set(&b, "soil_height_m", number(ground->soil_height));
+    if (ground->has_pot) {
+        set(&b, "pot_rim_height_m", number(ground->rim_height));
+        set(&b, "pot_diameter_m", number(ground->pot_diameter));
+    }
+    if (ground->has_table) set(&b, "table_height_m", number(ground->table_height));
+    return finish(&b);
+}
+
+static json_t *organs_json(const plm_segmentation *segmentation)
+{
+    if (!segmentation->label) return json_null();
+    builder b = begin_object();
+    set(&b, "habit", json_string(plm_habit_name(segmentation->habit)));
+    set(&b, "stems", json_integer((json_int_t)segmentation->stem_count));
+    set(&b, "petioles", json_integer((json_int_t)segmentation->petiole_count));
+    set(&b, "leaves", json_integer((json_int_t)segmentation->leaf_count));
+    return finish(&b);
+}
+
+static json_t *stage_json(const char *name, bool runs, const char *why, double seconds, uint64_t peak_bytes)
+{
+    builder b = begin_object();
+    set(&b, "stage", json_string(name));
+    set(&b, "runs", json_boolean(runs));
+    if (*why) set(&b, "why", json_string(why));
+    set(&b, "seconds", number(seconds));
+    if (peak_bytes) set(&b, "peak_bytes", json_integer((json_int_t)peak_bytes));
+    return finish(&b);
+}
+
+static json_t *plan_json(const plm_run_plant *plant)
+{
+    json_t *stages = json_array();
+    bool is_broken = false;
+    append(stages, &is_broken, stage_json("read", true, "", plant->read_seconds, plant->read_peak_bytes));
+    const plm_measurement *measurement = plant->report->measurement;
+    for (size_t i = 0; measurement && i < measurement->plan.stage_count; i++) {
+        const plm_stage *stage = &measurement->plan.stage[i];
+        append(stages, &is_broken, stage_json(stage->name, stage->runs, stage->why, stage->seconds, stage->peak_bytes));
+    }
+    append(stages, &is_broken, stage_json("write", true, "", plant->write_seconds, plant->write_peak_bytes));
+    return finish_array(stages, is_broken);
+}
+
+static json_t *warnings_json(const plm_run_plant *plant)
+{
+    json_t *warnings = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < plant->warning_count; i++) append(warnings, &is_broken, user_text(plant->warning[i]));
+    const plm_measurement *measurement = plant->report->measurement;
+    for (size_t i = 0; measurement && i < measurement->warning_count; i++)
+        append(warnings, &is_broken, user_text(measurement->warning[i]));
+    return finish_array(warnings, is_broken);
+}
+
+static json_t *files_json(const plm_run_plant *plant)
+{
+    json_t *files = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < plant->file_count; i++) append(files, &is_broken, user_text(plant->file[i]));
+    return finish_array(files, is_broken);
+}
+
+static json_t *dropped_json(const plm_read_report *read)
+{
+    builder b = begin_object();
+    set(&b, "not_finite", json_integer((json_int_t)read->dropped_not_finite));
+    set(&b, "transparent", json_integer((json_int_t)read->dropped_transparent));
+    set(&b, "withheld", json_integer((json_int_t)read->dropped_withheld));
+    return finish(&b);
+}
+
+static json_t *unit_json(const plm_run_plant *plant)
+{
+    builder b = begin_object();
+    set(&b, "metres_per_unit", number(plant->metres_per_unit));
+    set(&b, "evidence", user_text(plant->unit_evidence));
+    return finish(&b);
+}
+
+static json_t *place_json(const plm_georeference *place)
+{
+    builder b = begin_object();
+    set(&b, "longitude", number(place->longitude));
+    set(&b, "latitude", number(place->latitude));
+    set(&b, "height_m", number(place->height));
+    return finish(&b);
+}
+
+plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_error *error)
+{
+    plm_json_use_seam();
+    const plm_plant_report *report = plant->report;
+    const plm_measurement *measurement = report->measurement;
+    builder b = begin_object();
+    set(&b, "plant_id", user_text(report->plant_id));
+    set(&b, "input", user_text(plant->input));
+    set(&b, "sha256", json_string(plant->sha256));
+    set(&b, "status", json_string(measurement ? "ok" : "failed"));
+    if (report->failure) set(&b, "reason", user_text(report->failure));
+    if (plant->read) {
+        set(&b, "format", user_text(plant->read->description));
+        set(&b, "fields", user_text(plant->read->fields));
+        set(&b, "rows", json_integer((json_int_t)plant->read->rows));
+        set(&b, "points", json_integer((json_int_t)plant->point_count));
+        set(&b, "dropped", dropped_json(plant->read));
+        set(&b, "unit", unit_json(plant));
+    }
+    if (report->georeference) set(&b, "place", place_json(report->georeference));
+    if (measurement) {
+        set(&b, "frame", frame_json(&measurement->frame));
+        set(&b, "ground", ground_json(&measurement->ground));
+        set(&b, "organs", organs_json(&measurement->segmentation));
+    }
+    set(&b, "plan", plan_json(plant));
+    set(&b, "warnings", warnings_json(plant));
+    set(&b, "files", files_json(plant));
+    *object = finish(&b);
+    return plm_json_check(*object, error);
+}
+
+/* ---- The file --------------------------------------------------------------------------------------------------- */
+
+typedef struct dump {
+    plm_output *output;
+    plm_status status;
+    plm_error *error;
+} dump;
+
+static int dump_bytes(const char *buffer, size_t size, void *data)
+{
+    dump *d = data;
+    d->status = plm_output_write(d->output, buffer, size, d->error);
+    return d->status == PLM_OK ? 0 : -1;
+}
+
+static json_t *root_json(json_t *options, const plm_results *results)
+{
+    builder b = begin_object();
+    set(&b, "program", json_string("plantimeter"));
+    set(&b, "version", json_string(PLM_VERSION));
+    set(&b, "options", json_incref(options));
+    json_t *plants = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < results->count; i++)
+        if (results->plant[i].record) append(plants, &is_broken, json_incref(results->plant[i].record));
+    set(&b, "plants", finish_array(plants, is_broken));
+    return finish(&b);
+}
+
+plm_status plm_run_json_write(const char *path, json_t *options, const plm_results *results, plm_error *error)
+{
+    plm_json_use_seam();
+    json_t *root = root_json(options, results);
+    plm_status status = plm_json_check(root, error);
+    dump d = {.error = error};
+    if (status == PLM_OK) status = plm_output_open(path, &d.output, error);
+    if (status == PLM_OK) {
+        if (json_dump_callback(root, dump_bytes, &d, DUMP_FLAGS) != 0)
+            status = d.status != PLM_OK ? d.status : plm_json_check(NULL, error);
+        if (status == PLM_OK) status = plm_output_write(d.output, "\n", 1, error);
+        const plm_status closed = plm_output_close(d.output, status == PLM_OK, error);
+        if (status == PLM_OK) status = closed;
+    }
+    json_decref(root);
+    return status;
+}
+
+plm_status plm_run_json_read(const char *path, json_t **root, plm_error *error)
+{
+    plm_json_use_seam();
+    json_error_t trouble;
+    json_t *found = json_load_file(path, 0, &trouble);
+    if (!found && json_error_code(&trouble) == json_error_cannot_open_file)
+        return plm_fail(error, PLM_E_READ, "%s: cannot be opened", path);
+    if (!found) return plm_fail(error, PLM_E_FORMAT, "%s: line %d: %s", path, trouble.line, trouble.text);
+    *root = found;
+    return PLM_OK;
+}
+
+/* ---- For programs ----------------------------------------------------------------------------------------------- */
+
+static json_t *row_json(const plm_result_row *row)
+{
+    const bool is_ok = plm_result_row_is_ok(row);
+    builder b = begin_object();
+    set(&b, "organ", json_string(plm_level_name(row->trait->level)));
+    set(&b, "organ_id", row->organ_id < 0 ? json_null() : json_integer(row->organ_id));
+    set(&b, "trait", json_string(row->trait->name));
+    set(&b, "value", number(is_ok ? row->value : NAN));
+    set(&b, "unit", json_string(plm_unit_name(row->trait->unit)));
+    set(&b, "std_error", number(is_ok ? row->std_error : NAN));
+    set(&b, "n_points", json_integer((json_int_t)row->point_count));
+    set(&b, "status", json_string(row->status));
+    set(&b, "reason", user_text(row->reason));
+    set(&b, "method", user_text(row->method));
+    return finish(&b);
+}
+
+static json_t *plant_json(const plm_result *plant)
+{
+    builder b = begin_object();
+    set(&b, "plant_id", user_text(plant->plant_id));
+    set(&b, "status", json_string(plant->failure ? "failed" : "ok"));
+    set(&b, "reason", user_text(plant->failure ? plant->failure : ""));
+    if (plant->has_place) {
+        set(&b, "longitude", number(plant->longitude));
+        set(&b, "latitude", number(plant->latitude));
+    }
+    json_t *rows = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < plant->row_count; i++) append(rows, &is_broken, row_json(&plant->row[i]));
+    set(&b, "traits", finish_array(rows, is_broken));
+    return finish(&b);
+}
+
+plm_status plm_results_json(const plm_results *results, json_t **object, plm_error *error)
+{
+    plm_json_use_seam();
+    builder b = begin_object();
+    set(&b, "version", json_string(PLM_VERSION));
+    json_t *plants = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < results->count; i++) append(plants, &is_broken, plant_json(&results->plant[i]));
+    set(&b, "plants", finish_array(plants, is_broken));
+    *object = finish(&b);
+    return plm_json_check(*object, error);
+}

@@ -1,0 +1,215 @@
+/* tool/command_measure.c: the `measure` sub-command. Options in, a library call a plant, tables out; no geometry. */
+#include "reports/run_json.h"
+#include "tool/measure_settings.h"
+#include "tool/plant_run.h"
+#include "tool/talk.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+static const plm_option options[] = {
+    {.letter = 'o',
+     .name = "output",
+     .argument = "DIR",
+     .help =
+         "write traits.csv, plants.csv, run.json, and PLANT.labelled.ply, PLANT.leaves.ply and PLANT.png of each plant "
+         "into this folder (default: write nothing)",
+     .kind = PLM_OPTION_TEXT,
+     .offset = offsetof(measure_settings, output),
+     .changes_nothing = true},
+    {.letter = 't',
+     .name = "traits",
+     .argument = "LIST",
+     .help =
+         "measure only these traits: names, or plant, stem, petiole, leaf for all of that level, separated by commas; "
+         "only what they need is run (default: all)",
+     .kind = PLM_OPTION_TEXT,
+     .offset = offsetof(measure_settings, traits)},
+    {.name = "ground",
+     .argument = "auto|none|HEIGHT",
+     .help = "pot, soil and table: found out, not there, or all below HEIGHT along zenith, e.g. 12mm (default: auto)",
+     .kind = PLM_OPTION_TEXT,
+     .offset = offsetof(measure_settings, ground)},
+    {.name = "habit",
+     .argument = "auto|simple|compound|strap|rosette|head|single_leaf|bare_stem",
+     .help = "what kind of plant it is (default: auto, found out)",
+     .kind = PLM_OPTION_CHOICE,
+     .offset = offsetof(measure_settings, habit)},
+    {.name = "stem-height",
+     .argument = "LENGTH",
+     .help = "where the stem's diameter is taken: along the stem from its base, of branches from the branching point "
+             "(default: 20mm)",
+     .kind = PLM_OPTION_LENGTH,
+     .offset = offsetof(measure_settings, stem_height),
+     .minimum = 0,
+     .maximum = 5},
+    {.name = "neighbours",
+     .argument = "N",
+     .help = "neighbours of the smoothness factor (default: 16)",
+     .kind = PLM_OPTION_INTEGER,
+     .offset = offsetof(measure_settings, neighbours),
+     .minimum = 3,
+     .maximum = 1000},
+    {.name = "alpha",
+     .argument = "LENGTH",
+     .help = "radius of the leaf surfaces' alpha shapes, e.g. 3.6mm (default: found out from the spacing)",
+     .kind = PLM_OPTION_LENGTH,
+     .offset = offsetof(measure_settings, alpha),
+     .minimum = 0,
+     .maximum = 1},
+    {.name = "effort",
+     .argument = "fast|balanced|precise",
+     .help = "time spent on each value (default: balanced)",
+     .kind = PLM_OPTION_CHOICE,
+     .offset = offsetof(measure_settings, effort)},
+    {.name = "seed",
+     .argument = "N",
+     .help = "seed of random numbers (default: 0)",
+     .kind = PLM_OPTION_SEED,
+     .offset = offsetof(measure_settings, seed)},
+    {.name = "threads",
+     .argument = "N",
+     .help = "threads to use (default: all); the digits do not depend on it",
+     .kind = PLM_OPTION_INTEGER,
+     .offset = offsetof(measure_settings, threads),
+     .minimum = 1,
+     .maximum = 1024,
+     .changes_nothing = true},
+    {.name = "files",
+     .argument = "all|tables",
+     .help = "what -o writes: all, or only traits.csv, plants.csv and run.json (default: all)",
+     .kind = PLM_OPTION_CHOICE,
+     .offset = offsetof(measure_settings, files)},
+    {.letter = 'f',
+     .name = "force",
+     .help = "measure anew what the folder holds already",
+     .kind = PLM_OPTION_FLAG,
+     .offset = offsetof(measure_settings, force),
+     .changes_nothing = true},
+    {.letter = 'q',
+     .name = "quiet",
+     .help = "print nothing but errors",
+     .kind = PLM_OPTION_FLAG,
+     .offset = offsetof(measure_settings, quiet),
+     .changes_nothing = true},
+    {.name = "json",
+     .help = "print the results as one JSON object instead of the short table",
+     .kind = PLM_OPTION_FLAG,
+     .offset = offsetof(measure_settings, json),
+     .changes_nothing = true},
+};
+
+/** A batch under way, and what became of its plants. */
+typedef struct batch_tally {
+    size_t failed, skipped;
+    plm_status first_failure;
+} batch_tally;
+
+/* One input: measured, unless an earlier run did it. */
+static plm_status take_input(batch *open, size_t input, const char *path, const plant_run_options *run,
+                             batch_tally *count, plm_error *error)
+{
+    char sha256[65] = "";
+    if (strcmp(path, "-") && open->folder && plm_file_sha256(path, sha256, NULL) != PLM_OK) sha256[0] = 0;
+    bool has = false;
+    plm_status status = batch_has(open, input, sha256, &has, error);
+    if (status != PLM_OK) return status;
+    if (has) {
+        count->skipped++;
+        return PLM_OK;
+    }
+    plm_status plant_status = PLM_OK;
+    status = run_plant(open, input, path, sha256, run, &plant_status, error);
+    if (plant_status == PLM_OK) return status;
+    if (count->failed++ == 0) count->first_failure = plant_status;
+    const plm_result *plant = plm_results_find(&open->results, open->plant_id[input]);
+    fprintf(stderr, "plantimeter: %s: failed: %s\n", open->plant_id[input], plant ? plant->failure : "not recorded");
+    return status;
+}
+
+static plm_status print_results(const batch *done, const measure_settings *settings, plm_error *error)
+{
+    if (settings->json) {
+        json_t *object = NULL;
+        plm_status status = plm_results_json(&done->results, &object, error);
+        if (status == PLM_OK && json_dumpf(object, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0)
+            status = plm_fail(error, PLM_E_WRITE, "standard output: the JSON cannot be written");
+        if (status == PLM_OK) putchar('\n');
+        json_decref(object);
+        return status;
+    }
+    return settings->quiet ? PLM_OK : print_short_table(&done->results, settings->traits, error);
+}
+
+/* 0, or 1 where some plants failed; where all did, the code of their failure. */
+static int exit_code(const batch_tally *count, size_t inputs)
+{
+    if (count->failed == 0) return PLM_EXIT_GOOD;
+    return count->failed < inputs ? PLM_EXIT_SOME_FAILED : (int)plm_exit_of(count->first_failure);
+}
+
+static plm_status run_batch(const measure_settings *settings, plm_measure_options *measure, char *const *input,
+                            size_t count, batch_tally *tally, plm_error *error)
+{
+    json_t *recorded = NULL;
+    batch open;
+    progress_line line = progress_begin(settings->quiet);
+    measure->progress = progress_stage;
+    measure->progress_user = &line;
+    const plant_run_options run = {.reading = &settings->reading,
+                                   .measure = measure,
+                                   .with_files = settings->output && settings->files == 0,
+                                   .quiet = settings->quiet};
+    plm_status status = plm_options_json(&plm_command_measure, (void *)settings, &recorded, error);
+    if (status != PLM_OK) return status;
+    status = batch_open(&open, settings->output, recorded, settings->force, input, count, error);
+    if (status != PLM_OK) return status;
+    for (size_t i = 0; i < count && status == PLM_OK; i++) {
+        line = (progress_line){line.is_shown, open.plant_id[i], i + 1, count};
+        status = take_input(&open, i, input[i], &run, tally, error);
+        progress_end(&line);
+    }
+    if (status == PLM_OK) status = batch_save(&open, error);
+    if (status == PLM_OK && tally->skipped && !settings->quiet)
+        fprintf(stderr, "plantimeter: %zu of %zu plants were measured before; --force measures them again\n",
+                tally->skipped, count);
+    if (status == PLM_OK) status = print_results(&open, settings, error);
+    batch_close(&open);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    measure_settings settings = measure_setting_defaults();
+    const int code = plm_parse_options(&plm_command_measure, &argc, argv, &settings);
+    if (code >= 0) return code;
+    if (argc == 0) return plm_usage_error(&plm_command_measure, "no cloud is named");
+    plm_error error = {0};
+    plm_measure_options measure;
+    if (measure_options_of(&settings, &measure, &error) != PLM_OK)
+        return plm_usage_error(&plm_command_measure, "%s", error.message);
+    if (settings.threads) omp_set_num_threads(settings.threads);
+    batch_tally tally = {0};
+    const plm_status status = run_batch(&settings, &measure, argv, (size_t)argc, &tally, &error);
+    return status == PLM_OK ? exit_code(&tally, (size_t)argc) : plm_report_failure(status, &error);
+}
+
+const plm_command plm_command_measure = {
+    .name = "measure",
+    .arguments = "[OPTION]... CLOUD...",
+    .summary = "measure the plants in each CLOUD",
+    .description = "A CLOUD is one plant: a PLY, PCD, LAS or text file, or a PLY of 3D gaussians; - is standard input. "
+                   "Its file name "
+                   "becomes the plant's name. traits.csv has a row for each trait of each organ, with unit, standard "
+                   "error and status; "
+                   "plants.csv has a row for each plant; run.json records what was read and what was run.\n\n"
+                   "A batch that was ended goes on where it was: plants that the folder holds already, from the same "
+                   "bytes and with the "
+                   "same options, are not measured again. One bad file does not stop the others; its row says why.",
+    .options = options,
+    .option_count = COUNT(options),
+    .shared = reading_options,
+    .shared_count = READING_OPTION_COUNT,
+    .shared_offset = offsetof(measure_settings, reading),
+    .run = run};
