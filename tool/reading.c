@@ -188,7 +188,8 @@ static plm_status place_of(const plm_cloud *cloud, const length_end *end, double
     return PLM_OK;
 }
 
-static plm_status scale_of_known_length(const plm_cloud *cloud, const char *text, plm_scale *scale, plm_error *error)
+static plm_status scale_of_known_length(const plm_cloud *cloud, const char *text, plm_unit_scale *scale,
+                                        plm_error *error)
 {
     length_end end[2];
     double metres, place[2][3];
@@ -198,18 +199,18 @@ static plm_status scale_of_known_length(const plm_cloud *cloud, const char *text
 }
 
 static plm_status find_scale(const reading_settings *settings, const plm_cloud *cloud, plm_format format,
-                             plm_scale *scale, plm_error *error)
+                             plm_unit_scale *scale, plm_error *error)
 {
     static const char *const units[] = {"", "m", "cm", "mm"};
     if (settings->known_length) return scale_of_known_length(cloud, settings->known_length, scale, error);
     if (settings->unit != UNIT_AUTO) {
-        *scale = (plm_scale){.metres_per_unit = unit_metres[settings->unit], .unit = units[settings->unit]};
+        *scale = (plm_unit_scale){.metres_per_unit = unit_metres[settings->unit], .unit = units[settings->unit]};
         snprintf(scale->evidence, sizeof scale->evidence, "given: --unit %s", scale->unit);
     } else if (settings->scale != 0) {
-        *scale = (plm_scale){.metres_per_unit = settings->scale, .unit = "?"};
+        *scale = (plm_unit_scale){.metres_per_unit = settings->scale, .unit = "?"};
         snprintf(scale->evidence, sizeof scale->evidence, "given: --scale %.9g", settings->scale);
     } else if (format == PLM_FORMAT_LAS || settings->crs) {
-        *scale = (plm_scale){.metres_per_unit = 1, .unit = "m"};
+        *scale = (plm_unit_scale){.metres_per_unit = 1, .unit = "m"};
         snprintf(scale->evidence, sizeof scale->evidence, settings->crs ? "given: --crs" : "LAS files are in metres");
     } else {
         return plm_scale_guess(cloud, scale, error);

@@ -23,7 +23,7 @@ extern const plm_option reading_options[READING_OPTION_COUNT];
 typedef struct loaded_cloud {
     plm_cloud cloud; /* metres; local east-north-up where georeferenced */
     plm_read_report report;
-    plm_scale scale;
+    plm_unit_scale scale;
     bool is_georeferenced;
     plm_georeference georeference;
     float (*original)[3]; /* the file's coordinates, kept on demand; NULL else */

@@ -50,6 +50,33 @@ static plm_status run_frame(plant_job *job, plm_error *error)
     return PLM_OK;
 }
 
+/* Whether any of the labels that came with the cloud is ground. */
+static bool has_labelled_ground(const plm_cloud *cloud)
+{
+    for (size_t i = 0; i < cloud->count; i++)
+        if (cloud->label[i] == PLM_LABEL_GROUND) return true;
+    return false;
+}
+
+/* Labels that came with the cloud say what is ground; only its heights are looked for then, and only where some is. */
+static plm_status run_ground(plant_job *job, plm_error *error)
+{
+    const plm_measure_options *options = job->options;
+    if (job->has_labels && options->ground == PLM_GROUND_AUTO && !has_labelled_ground(job->cloud)) {
+        plm_plan_leave_out(&job->draft->plan, PLM_STAGE_GROUND, "left out: the labels name no ground");
+        return PLM_OK;
+    }
+    uint8_t *label = plm_alloc_zero(job->cloud->count, sizeof *label, error);
+    if (!label) return PLM_E_MEMORY;
+    const plm_status status =
+        plm_find_ground(job->cloud, options->ground, options->ground_height, label, &job->draft->ground, error);
+    if (status == PLM_OK && !job->has_labels)
+        job->label = label;
+    else
+        plm_free(label);
+    return status;
+}
+
 /* The rows that the trait functions call the plant: by the labels that came with the cloud, else all that is neither
  * ground nor noise. What segmenting calls other stays in: heights and hulls must not depend on whether leaves were
  * asked for as well. */
@@ -145,8 +172,9 @@ static plm_status run_traits(plant_job *job, plm_error *error)
 /* ---- Running them ---------------------------------------------------------------------------------------------- */
 
 static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
-    [PLM_STAGE_FRAME] = run_frame,   [PLM_STAGE_INDEX] = run_index, [PLM_STAGE_SEGMENT] = run_segment,
-    [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_HULL] = run_hull,   [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_GROUND] = run_ground,   [PLM_STAGE_FRAME] = run_frame,   [PLM_STAGE_INDEX] = run_index,
+    [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_HULL] = run_hull,
+    [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)

@@ -131,19 +131,19 @@ PLM_API plm_status plm_plan_make(const plm_measure_options *options, unsigned at
 /* ---- The unit of a file ----------------------------------------------------------------------------------------- */
 
 /** How many metres the unit of a file is, and how that is known. */
-typedef struct plm_scale {
+typedef struct plm_unit_scale {
     double metres_per_unit;
     const char *unit;   /**< "m", "cm", "mm", "?": static text */
     bool is_doubtful;   /**< the size is none that a plant has in metres: the user should be told evidence */
     char evidence[192]; /**< in words */
-} plm_scale;
+} plm_unit_scale;
 
 /** Guesses the unit: metres where the size is one that plants have, else millimetres or centimetres by the spacing of
  * the points. PLM_E_DEGENERATE for an empty cloud. */
-PLM_API plm_status plm_scale_guess(const plm_cloud *cloud, plm_scale *scale, plm_error *error);
+PLM_API plm_status plm_scale_guess(const plm_cloud *cloud, plm_unit_scale *scale, plm_error *error);
 
 /** The scale from two points of the file, in its unit, whose distance in metres is known. PLM_E_ARGUMENT. */
-PLM_API plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_scale *scale,
+PLM_API plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_unit_scale *scale,
                                        plm_error *error);
 
 /** Multiplies coordinates, origin and extents by factor, in place. */

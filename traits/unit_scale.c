@@ -63,14 +63,14 @@ static plm_status nearest_distance(const plm_cloud *cloud, double *distance, plm
     return value ? PLM_OK : PLM_E_MEMORY;
 }
 
-plm_status plm_scale_guess(const plm_cloud *cloud, plm_scale *scale, plm_error *error)
+plm_status plm_scale_guess(const plm_cloud *cloud, plm_unit_scale *scale, plm_error *error)
 {
     if (cloud->count == 0) return plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points");
     double size, distance = 0;
     plm_status status = robust_size(cloud, &size, error);
     if (status == PLM_OK && size > largest_plant) status = nearest_distance(cloud, &distance, error);
     if (status != PLM_OK) return status;
-    *scale = (plm_scale){.metres_per_unit = 1, .unit = "m"};
+    *scale = (plm_unit_scale){.metres_per_unit = 1, .unit = "m"};
     if (size > largest_plant) {
         scale->is_doubtful = true;
         const bool is_centimetre = distance < finest_millimetres && size * 1e-2 <= largest_plant;
@@ -93,7 +93,8 @@ plm_status plm_scale_guess(const plm_cloud *cloud, plm_scale *scale, plm_error *
     return PLM_OK;
 }
 
-plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_scale *scale, plm_error *error)
+plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_unit_scale *scale,
+                               plm_error *error)
 {
     const double length = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
     if (!(metres > 0) || !isfinite(metres))
@@ -101,7 +102,7 @@ plm_status plm_scale_of_length(const double a[3], const double b[3], double metr
     if (!(length > 0) || !isfinite(length))
         return plm_fail(error, PLM_E_ARGUMENT, "the ends of the known length are %g units apart; expected more than 0",
                         length);
-    *scale = (plm_scale){.metres_per_unit = metres / length, .unit = "?"};
+    *scale = (plm_unit_scale){.metres_per_unit = metres / length, .unit = "?"};
     snprintf(scale->evidence, sizeof scale->evidence, "known length: %.6g units are %.6g m", length, metres);
     return PLM_OK;
 }
