@@ -169,11 +169,21 @@ static plm_status read_folder(batch *open, plm_error *error)
     if (status == PLM_OK && open->results.count) status = plm_results_read_traits(&open->results, traits, error);
     json_decref(root);
     if (status == PLM_E_FORMAT || status == PLM_E_READ) { /* not the input's fault */
-        char reason[PLM_ERROR_LENGTH];
-        snprintf(reason, sizeof reason, "%s", error->message);
+        char reason[PLM_ERROR_LENGTH] = "";
+        if (error) snprintf(reason, sizeof reason, "%s", error->message);
         return plm_fail(error, PLM_E_WRITE, "%.400s; give --force or another -o", reason);
     }
     return status;
+}
+
+/* Under --force a folder is no obstacle: what can be kept of other plants is, what cannot is not missed. */
+static void read_folder_leniently(batch *open)
+{
+    if (read_folder(open, NULL) != PLM_OK) plm_results_free(&open->results);
+    for (size_t i = 0; i < open->input_count; i++) {
+        plm_result *before = plm_results_find(&open->results, open->plant_id[i]);
+        if (before) plm_results_remove(&open->results, before);
+    }
 }
 
 plm_status batch_open(batch *made, const char *folder, json_t *options, bool force, char *const *input,
@@ -183,6 +193,7 @@ plm_status batch_open(batch *made, const char *folder, json_t *options, bool for
     plm_status status = name_plants(&open, input, input_count, error);
     if (status == PLM_OK && folder) status = make_folder(folder, error);
     if (status == PLM_OK && folder && !force) status = read_folder(&open, error);
+    if (status == PLM_OK && folder && force) read_folder_leniently(&open);
     if (status == PLM_OK)
         *made = open;
     else

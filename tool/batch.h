@@ -17,7 +17,7 @@ typedef struct batch {
 
 /** Names the plants, makes the folder and reads what it holds. options is taken over, also on failure.
  * folder   NULL: nothing is written and nothing read.
- * force    what the folder holds is of no account.
+ * force    the inputs are measured anew whatever the folder holds; other plants in it stay where the options are the same.
  * PLM_E_WRITE  the folder cannot be made, or holds results of other options or of another version. */
 plm_status batch_open(batch *made, const char *folder, json_t *options, bool force, char *const *input,
                       size_t input_count, plm_error *error);
