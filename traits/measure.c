@@ -151,6 +151,12 @@ static plm_status run_organs(plant_job *job, plm_error *error)
     return status;
 }
 
+static plm_status run_surfaces(plant_job *job, plm_error *error)
+{
+    const plm_status status = plm_scene_surfaces(&job->scene, error);
+    return status == PLM_OK ? plm_scene_leaf_mesh(&job->scene, &job->draft->leaves, error) : status;
+}
+
 /* Points without a hull (too few, all on one line) leave the reason to the traits that want it. */
 static plm_status run_hull(plant_job *job, plm_error *error)
 {
@@ -173,8 +179,8 @@ static plm_status run_traits(plant_job *job, plm_error *error)
 
 static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
     [PLM_STAGE_GROUND] = run_ground,   [PLM_STAGE_FRAME] = run_frame,   [PLM_STAGE_INDEX] = run_index,
-    [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_HULL] = run_hull,
-    [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_SURFACES] = run_surfaces,
+    [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)

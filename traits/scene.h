@@ -67,6 +67,12 @@ plm_status plm_scene_index(plm_scene *scene, plm_error *error);
 /** Copies out the organs that the segmentation (of scene->cloud's rows) names. with_index: index and sampling too. */
 plm_status plm_scene_organs(plm_scene *scene, const plm_segmentation *segmentation, bool with_index, plm_error *error);
 
+/** Makes the surfaces of all leaves; a leaf that has none says why in surface_reason. Parallel over leaves. */
+plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error);
+
+/** All leaf surfaces as one mesh at the cloud's origin, face_organ the leaf's number; the caller's. */
+plm_status plm_scene_leaf_mesh(const plm_scene *scene, plm_mesh *mesh, plm_error *error);
+
 void plm_scene_free(plm_scene *scene);
 
 #endif
