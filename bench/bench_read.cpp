@@ -137,9 +137,10 @@ int main(int count, char **arguments)
 {
     const size_t points = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : 5000000;
     const int repeats = count > 2 ? std::atoi(arguments[2]) : 9;
-    char folder[] = "/tmp/bench_read_XXXXXX";
-    if (!mkdtemp(folder)) return 1;
-    const std::string ply = std::string(folder) + "/cloud.ply", text = std::string(folder) + "/cloud.xyz";
+    const char *base = std::getenv("TMPDIR");
+    std::string folder = std::string(base ? base : P_tmpdir) + "/bench_read_XXXXXX";
+    if (!mkdtemp(folder.data())) return 1;
+    const std::string ply = folder + "/cloud.ply", text = folder + "/cloud.xyz";
     plm_cloud cloud = make_cloud(points);
     const size_t ply_size = write_file(ply, cloud);
     cloud.count = points / 5;
@@ -152,6 +153,6 @@ int main(int count, char **arguments)
                 1e3 * median(times), (double)text_size / 1e6 / median(times));
     std::remove(ply.c_str());
     std::remove(text.c_str());
-    rmdir(folder);
+    rmdir(folder.c_str());
     return 0;
 }

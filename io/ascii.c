@@ -128,7 +128,8 @@ static row_fault parse_blank_row(const ascii_work *work, const char *at, const c
         }
     }
     while (at < end && is_blank(*at)) at++;
-    return at == end ? (row_fault){0} : fault_at(FAULT_TOO_MANY, work->ascii->item_count, at, end);
+    if (at == end) return (row_fault){0};
+    return fault_at(FAULT_TOO_MANY, work->ascii->item_count, at, end);
 }
 
 /* Rows with a separator: items may be empty (then NaN) and stand in quotation marks; one may end the line. */
@@ -152,7 +153,8 @@ static row_fault parse_separated_row(const ascii_work *work, const char *at, con
         keep(target, row, value);
     }
     while (at < end && is_blank(*at)) at++;
-    return at == end ? (row_fault){0} : fault_at(FAULT_TOO_MANY, work->ascii->item_count, at, end);
+    if (at == end) return (row_fault){0};
+    return fault_at(FAULT_TOO_MANY, work->ascii->item_count, at, end);
 }
 
 /* ---- Chunks -------------------------------------------------------------------------------------------------- */
