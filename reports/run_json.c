@@ -28,25 +28,26 @@ static json_t *number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-/* How many bytes of UTF-8 begin at text: 0 where there are none (overlong forms and surrogates are left to jansson). */
+/* How many bytes of UTF-8 begin at text: 0 where there are none (RFC 3629: no overlong forms, no surrogates). */
 static size_t sequence_length(const unsigned char *text)
 {
-    const size_t length = text[0] < 0x80   ? 1
-                          : text[0] < 0xc2 ? 0
-                          : text[0] < 0xe0 ? 2
-                          : text[0] < 0xf0 ? 3
-                          : text[0] < 0xf5 ? 4
-                                           : 0;
+    const unsigned char first = text[0];
+    const size_t length = first < 0x80   ? 1
+                          : first < 0xc2 ? 0
+                          : first < 0xe0 ? 2
+                          : first < 0xf0 ? 3
+                          : first < 0xf5 ? 4
+                                         : 0;
     for (size_t i = 1; i < length; i++)
         if ((text[i] & 0xc0) != 0x80) return 0;
-    return length;
+    const bool is_overlong = (first == 0xe0 && text[1] < 0xa0) || (first == 0xf0 && text[1] < 0x90);
+    const bool is_no_character = (first == 0xed && text[1] >= 0xa0) || (first == 0xf4 && text[1] >= 0x90);
+    return is_overlong || is_no_character ? 0 : length;
 }
 
 /* A text of the user's: names of files and fields may hold bytes that are no UTF-8; JSON may not. */
 static json_t *user_text(const char *text)
 {
-    json_t *whole = json_string(text);
-    if (whole) return whole;
     char *clean = plm_strdup(text, NULL);
     if (!clean) return NULL;
     for (unsigned char *at = (unsigned char *)clean; *at;) {
@@ -55,9 +56,6 @@ static json_t *user_text(const char *text)
         at += length ? length : 1;
     }
     json_t *made = json_string(clean);
-    for (char *at = clean; !made && *at; at++) /* a form that only jansson refuses */
-        if (*at & 0x80) *at = '?';
-    if (!made) made = json_string(clean);
     plm_free(clean);
     return made;
 }
