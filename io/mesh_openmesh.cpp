@@ -101,7 +101,7 @@ extern "C" plm_status plm_mesh_openmesh_write(const plm_mesh *mesh, const double
         exporter source(properties, *mesh, origin, is_ply ? face_colour : nullptr);
         std::ostringstream text;
         text.exceptions(std::ios::badbit); /* a stream keeps bad_alloc to itself else */
-        const int digits = 9; /* of a float: enough to find it again */
+        const int digits = 9;              /* of a float: enough to find it again */
         if (!OpenMesh::IO::IOManager().write(text, format, source, options, digits))
             return plm_fail(error, PLM_E_LIBRARY, "OpenMesh cannot write %s", format);
         const std::string bytes = text.str();
