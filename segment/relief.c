@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "segment/subset.h"
+
 enum { ROUNDS = 5, BINS = 256, MOST = 150000 };
 
 static const double cells_of_patches = 4; /* a raster cell is four voxels wide */
@@ -89,18 +91,6 @@ static double fit_round(const float (*place)[3], const uint32_t *chosen, size_t 
     return robust_sigma((const size_t *)histogram, band);
 }
 
-/* A number from a place's bits, to choose some places whatever the order of the rows is. */
-static uint32_t scramble(const float p[3])
-{
-    uint32_t word[3], mixed = 0;
-    memcpy(word, p, sizeof word);
-    for (int i = 0; i < 3; i++) {
-        mixed = (mixed ^ word[i]) * UINT32_C(0x9E3779B1);
-        mixed ^= mixed >> 15;
-    }
-    return mixed;
-}
-
 /* Rows within band of the plane that the filter admits; of many, every second, fourth, ... by their bits. */
 static size_t choose(const float (*place)[3], size_t count, const double plane[3], double band,
                      plm_relief_filter filter, const void *context, uint32_t *chosen)
@@ -108,12 +98,11 @@ static size_t choose(const float (*place)[3], size_t count, const double plane[3
     size_t near = 0, n = 0;
     for (size_t i = 0; i < count; i++)
         near += fabs(place[i][2] - (plane[0] * place[i][0] + plane[1] * place[i][1] + plane[2])) < band;
-    uint32_t mask = 0;
-    while (near / (mask + 1) > MOST) mask = 2 * mask + 1;
+    const uint32_t mask = plm_subset_mask(near, MOST);
     for (size_t i = 0; i < count; i++) {
         const double p[3] = {place[i][0], place[i][1], place[i][2]};
         if (!(fabs(p[2] - (plane[0] * p[0] + plane[1] * p[1] + plane[2])) < band)) continue;
-        if ((scramble(place[i]) & mask) == 0 && filter(context, p)) chosen[n++] = (uint32_t)i;
+        if ((plm_point_bits(place[i]) & mask) == 0 && filter(context, p)) chosen[n++] = (uint32_t)i;
     }
     return n;
 }

@@ -1,0 +1,226 @@
+/* Cleaning: floaters go, thin stems and sparse regions stay. */
+#include "support/test.h"
+
+#include "cloud/linear.h"
+#include "io/io.h"
+#include "segment/segment.h"
+#include "support/scene.h"
+
+static const test_scene plant = {.points = 200000, .leaf_length = 0.35, .noise = 0.0005, .spacing = 0.005, .seed = 7};
+
+/* Shares of the points of each label that were dropped, in per cent. */
+static void dropped(const plm_cloud *cloud, double share[PLM_LABEL_COUNT])
+{
+    plm_error error = {0};
+    bool *keep = malloc(cloud->count + 1);
+    double all[PLM_LABEL_COUNT] = {0}, spacing = -1;
+    assert_ok(plm_clean(cloud, cloud->label, keep, &spacing, &error));
+    assert_true(spacing >= 0);
+    memset(share, 0, PLM_LABEL_COUNT * sizeof *share);
+    for (size_t i = 0; i < cloud->count; i++) {
+        all[cloud->label[i]]++;
+        share[cloud->label[i]] += !keep[i];
+    }
+    for (int k = 0; k < PLM_LABEL_COUNT; k++) share[k] *= all[k] > 0 ? 100 / all[k] : 0;
+    free(keep);
+}
+
+static void append(plm_cloud *cloud, size_t *room, double x, double y, double z, plm_label label)
+{
+    assert_true(*room > 0);
+    (*room)--;
+    cloud->xyz[cloud->count][0] = (float)x, cloud->xyz[cloud->count][1] = (float)y,
+    cloud->xyz[cloud->count][2] = (float)z;
+    cloud->label[cloud->count++] = (uint8_t)label;
+}
+
+static plm_cloud make(const test_scene *scene, size_t *room)
+{
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(test_scene_make(scene, &cloud, &error));
+    *room = scene->points - cloud.count;
+    return cloud;
+}
+
+static void a_clean_plant_stays_whole(void **unused)
+{
+    (void)unused;
+    static const double spacing[] = {0.004, 0.008, 0.015}; /* 28 000 to 2000 points */
+    for (size_t i = 0; i < COUNT(spacing); i++) {
+        test_scene s = plant;
+        s.noise = 0, s.spacing = spacing[i];
+        size_t room;
+        plm_cloud cloud = make(&s, &room);
+        double share[PLM_LABEL_COUNT];
+        dropped(&cloud, share);
+        if (share[PLM_LABEL_STEM] > 0.5 || share[PLM_LABEL_LEAF] > 0.5 || share[PLM_LABEL_PETIOLE] > 1.5)
+            fail_msg("%zu points: %.2f %% of stem, %.2f of petiole, %.2f of leaf dropped", cloud.count,
+                     share[PLM_LABEL_STEM], share[PLM_LABEL_PETIOLE], share[PLM_LABEL_LEAF]);
+        plm_cloud_free(&cloud);
+    }
+}
+
+static void scattered_floaters_go(void **unused)
+{
+    (void)unused;
+    test_scene s = plant;
+    s.outliers = 0.01;
+    size_t room;
+    plm_cloud cloud = make(&s, &room);
+    double share[PLM_LABEL_COUNT];
+    dropped(&cloud, share);
+    assert_true(share[PLM_LABEL_OTHER] > 90); /* the rest lie on the plant */
+    assert_true(share[PLM_LABEL_STEM] < 1 && share[PLM_LABEL_LEAF] < 0.5);
+    plm_cloud_free(&cloud);
+}
+
+static void a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays(void **unused)
+{
+    (void)unused;
+    size_t room;
+    plm_cloud cloud = make(&plant, &room);
+    uint64_t state = 2;
+    for (int i = 0; i < 40; i++)
+        append(&cloud, &room, 0.8 + 0.01 * test_normal(&state), 0.5 + 0.01 * test_normal(&state),
+               0.2 + 0.01 * test_normal(&state), PLM_LABEL_OTHER);
+    for (int i = 0; i < 900; i++) /* 0.1 x 0.2 at the plant's spacing, 0.08 beyond the other leaves */
+        append(&cloud, &room, -0.55 - 0.1 * test_uniform(&state), 0.2 * test_uniform(&state), 0.5, PLM_LABEL_LEAF);
+    double share[PLM_LABEL_COUNT];
+    dropped(&cloud, share);
+    assert_near(share[PLM_LABEL_OTHER], 100, 0);
+    assert_true(share[PLM_LABEL_LEAF] < 0.5);
+    plm_cloud_free(&cloud);
+}
+
+/* A stem as thin as a line of points, and a density that falls thirty-fold over the plant: both stay. */
+static void thin_stems_and_sparse_regions_stay(void **unused)
+{
+    (void)unused;
+    test_scene s = plant;
+    s.spacing = 0.003;
+    size_t room;
+    plm_cloud cloud = make(&s, &room);
+    uint64_t state = 6;
+    for (int i = 0; i < 120; i++)
+        append(&cloud, &room, 0.3 + 0.0005 * test_normal(&state), 0, 0.0045 * i, PLM_LABEL_PETIOLE);
+    double share[PLM_LABEL_COUNT];
+    dropped(&cloud, share);
+    assert_true(share[PLM_LABEL_PETIOLE] < 1.5);
+    plm_cloud_free(&cloud);
+
+    cloud = make(&s, &room);
+    size_t kept = 0;
+    for (size_t i = 0; i < cloud.count; i++) {
+        if (test_uniform(&state) > pow(30, -(cloud.xyz[i][0] + 0.4) / 0.8)) continue;
+        memcpy(cloud.xyz[kept], cloud.xyz[i], sizeof *cloud.xyz);
+        cloud.label[kept++] = cloud.label[i];
+    }
+    cloud.count = kept;
+    dropped(&cloud, share);
+    assert_true(share[PLM_LABEL_STEM] < 1 && share[PLM_LABEL_LEAF] < 1);
+    plm_cloud_free(&cloud);
+}
+
+static void ground_is_neither_judged_nor_counted(void **unused)
+{
+    (void)unused;
+    test_scene s = plant;
+    size_t room;
+    plm_cloud cloud = make(&s, &room);
+    for (int i = 0; i < 30; i++) append(&cloud, &room, 1 + 0.3 * i, 2, 0, PLM_LABEL_GROUND);
+    double share[PLM_LABEL_COUNT];
+    dropped(&cloud, share);
+    assert_near(share[PLM_LABEL_GROUND], 0, 0);
+    assert_true(share[PLM_LABEL_LEAF] < 0.5);
+    plm_cloud_free(&cloud);
+}
+
+static void rows_may_come_in_any_order(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    test_scene s = plant;
+    s.outliers = 0.01, s.spacing = 0.003;
+    size_t room;
+    plm_cloud cloud = make(&s, &room), reversed;
+    const size_t n = cloud.count;
+    uint32_t *order = malloc(n * sizeof *order);
+    for (size_t i = 0; i < n; i++) order[i] = (uint32_t)(n - 1 - i);
+    assert_ok(plm_cloud_select(&cloud, order, n, &reversed, &error));
+    bool *keep = malloc(n), *again = malloc(n);
+    double spacing, other;
+    assert_ok(plm_clean(&cloud, NULL, keep, &spacing, &error));
+    assert_ok(plm_clean(&reversed, NULL, again, &other, &error));
+    assert_near(other, spacing, 1e-6 * spacing);
+    size_t different = 0;
+    for (size_t i = 0; i < n; i++) different += keep[order[i]] != again[i];
+    assert_int_equal(different, 0);
+    free(order);
+    free(keep);
+    free(again);
+    plm_cloud_free(&cloud);
+    plm_cloud_free(&reversed);
+}
+
+static void few_or_coinciding_points_are_kept(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    for (int kind = 0; kind < 3; kind++)
+        for (size_t count = 0; count < 60; count++) {
+            plm_cloud cloud;
+            assert_ok(plm_cloud_create(count, PLM_HAS_LABEL, &cloud, &error));
+            for (size_t i = 0; i < count; i++) {
+                cloud.label[i] = PLM_LABEL_LEAF;
+                for (int a = 0; a < 3; a++)
+                    cloud.xyz[i][a] = kind == 0 ? 2 : kind == 1 ? (a ? 0 : (float)i) : (float)(i % (size_t)(3 + a));
+            }
+            double share[PLM_LABEL_COUNT];
+            dropped(&cloud, share);
+            assert_near(share[PLM_LABEL_LEAF], 0, 0);
+            plm_cloud_free(&cloud);
+        }
+}
+
+static void clouds_with_known_truth_lose_floaters_only(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *name;
+        double wrong, good; /* per cent of wrong points dropped at least, of good ones at most */
+    } expected[] = {{"eggplant_11_3dgs", 85, 1},          {"okra_32_3dgs", 85, 1},    {"cucumber_34_splat", 85, 1},
+                    {"arabidopsis_24_rgbd_pot", 50, 0.5}, {"maize_15_clean", 0, 0.5}, {"okra_13_clean", 0, 0.5}};
+    const char *folder = test_data_folder();
+    if (!folder) skip();
+    plm_error error = {0};
+    for (size_t i = 0; i < COUNT(expected); i++) {
+        char path[600];
+        snprintf(path, sizeof path, "%s/dev/%s.labelled.ply", folder, expected[i].name);
+        plm_cloud cloud;
+        assert_ok(plm_cloud_read(path, &(plm_read_options){.label_field = "label"}, &cloud, NULL, &error));
+        double share[PLM_LABEL_COUNT];
+        dropped(&cloud, share);
+        for (int k = PLM_LABEL_STEM; k <= PLM_LABEL_LEAF; k++)
+            if (share[k] > expected[i].good)
+                fail_msg("%s: %.2f %% of %s dropped", expected[i].name, share[k], plm_label_name((plm_label)k));
+        if (share[PLM_LABEL_OTHER] < expected[i].wrong)
+            fail_msg("%s: only %.1f %% of the wrong points dropped", expected[i].name, share[PLM_LABEL_OTHER]);
+        plm_cloud_free(&cloud);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_clean_plant_stays_whole),
+        cmocka_unit_test(scattered_floaters_go),
+        cmocka_unit_test(a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays),
+        cmocka_unit_test(thin_stems_and_sparse_regions_stay),
+        cmocka_unit_test(ground_is_neither_judged_nor_counted),
+        cmocka_unit_test(rows_may_come_in_any_order),
+        cmocka_unit_test(few_or_coinciding_points_are_kept),
+        cmocka_unit_test(clouds_with_known_truth_lose_floaters_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
