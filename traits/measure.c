@@ -77,6 +77,12 @@ static plm_status run_ground(plant_job *job, plm_error *error)
     return status;
 }
 
+static plm_status run_clean(plant_job *job, plm_error *error)
+{
+    job->keep = plm_alloc(job->cloud->count, sizeof *job->keep, error);
+    return job->keep ? plm_clean(job->cloud, job->label, job->keep, NULL, error) : PLM_E_MEMORY;
+}
+
 /* The rows that the trait functions call the plant: by the labels that came with the cloud, else all that is neither
  * ground nor noise. What segmenting calls other stays in: heights and hulls must not depend on whether leaves were
  * asked for as well. */
@@ -178,9 +184,9 @@ static plm_status run_traits(plant_job *job, plm_error *error)
 /* ---- Running them ---------------------------------------------------------------------------------------------- */
 
 static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
-    [PLM_STAGE_GROUND] = run_ground,   [PLM_STAGE_FRAME] = run_frame,   [PLM_STAGE_INDEX] = run_index,
-    [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs, [PLM_STAGE_SURFACES] = run_surfaces,
-    [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_GROUND] = run_ground,     [PLM_STAGE_CLEAN] = run_clean,     [PLM_STAGE_FRAME] = run_frame,
+    [PLM_STAGE_INDEX] = run_index,       [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs,
+    [PLM_STAGE_SURFACES] = run_surfaces, [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)
