@@ -13,4 +13,22 @@
 PLM_TRAIT_FUNCTION(plm_trait_leaf_count);
 PLM_TRAIT_FUNCTION(plm_trait_leaflet_count);
 
+/* traits/leaf_area.c */
+PLM_TRAIT_FUNCTION(plm_trait_leaf_area);
+PLM_TRAIT_FUNCTION(plm_trait_total_leaf_area);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_alpha);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_alpha_sensitivity);
+
+/* traits/leaf_inclination.c */
+PLM_TRAIT_FUNCTION(plm_trait_leaf_inclination);
+PLM_TRAIT_FUNCTION(plm_trait_facet_inclination_mean);
+PLM_TRAIT_FUNCTION(plm_trait_facet_inclination_sd);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_flatness);
+
+/* traits/leaf_size.c */
+PLM_TRAIT_FUNCTION(plm_trait_leaf_length);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_width);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth_from_stem);
+
 #endif

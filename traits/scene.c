@@ -209,6 +209,7 @@ void plm_scene_free(plm_scene *scene)
     for (size_t i = 0; i < scene->organ_count; i++) {
         plm_organ *organ = &scene->organ[i];
         plm_leaf_surface_free(&organ->surface);
+        plm_free(organ->midrib);
         plm_index_free(organ->index);
         plm_free(organ->leaflet);
         plm_free(organ->row);

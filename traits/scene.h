@@ -23,7 +23,8 @@ struct plm_organ {
     plm_leaf_surface surface; /* leaves; empty where it was not asked for or failed */
     plm_status surface_status;
     char surface_reason[160];
-    struct plm_axis *axis; /* stems and petioles: the fitted centre line and radius (traits/axis.h); NULL else */
+    struct plm_midrib *midrib; /* leaves with a surface (traits/leaf_midrib.h); NULL where it has no petiole or stem */
+    struct plm_axis *axis;     /* stems and petioles: the fitted centre line and radius (traits/axis.h); NULL else */
     char axis_reason[160];
 };
 
@@ -67,7 +68,7 @@ plm_status plm_scene_index(plm_scene *scene, plm_error *error);
 /** Copies out the organs that the segmentation (of scene->cloud's rows) names. with_index: index and sampling too. */
 plm_status plm_scene_organs(plm_scene *scene, const plm_segmentation *segmentation, bool with_index, plm_error *error);
 
-/** Makes the surfaces of all leaves; a leaf that has none says why in surface_reason. Parallel over leaves. */
+/** Makes the surfaces and midribs of all leaves; a leaf that has none says why in surface_reason. Parallel over leaves. */
 plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error);
 
 /** All leaf surfaces as one mesh at the cloud's origin, face_organ the leaf's number; the caller's. */

@@ -1,5 +1,5 @@
-/* traits/scene_surfaces.c: the surfaces of a scene's leaves, and all of them as one mesh. */
-#include "traits/scene.h"
+/* traits/scene_surfaces.c: the surfaces and midribs of a scene's leaves, and all of them as one mesh. */
+#include "traits/leaf_midrib.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,9 +14,11 @@ static plm_status make_surface(const plm_scene *scene, plm_organ *leaf)
     plm_error trouble = {0};
     leaf->surface_status =
         plm_leaf_surface_make((const float(*)[3])leaf->xyz, leaf->count, &options, &leaf->surface, &trouble);
-    snprintf(leaf->surface_reason, sizeof leaf->surface_reason, "%.150s", trouble.message);
-    const bool is_fatal = leaf->surface_status == PLM_E_MEMORY;
-    return is_fatal ? leaf->surface_status : PLM_OK;
+    plm_status status = leaf->surface_status;
+    if (status == PLM_OK) status = plm_midrib_find(scene, leaf, &leaf->midrib, &trouble);
+    if (leaf->surface_status != PLM_OK || status == PLM_E_MEMORY)
+        snprintf(leaf->surface_reason, sizeof leaf->surface_reason, "%.150s", trouble.message);
+    return status == PLM_E_MEMORY ? status : PLM_OK;
 }
 
 plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error)

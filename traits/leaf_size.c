@@ -1,0 +1,98 @@
+/* traits/leaf_size.c: length and width of leaves, and the directions in which they point. */
+#include "traits/families.h"
+#include "traits/leaf_midrib.h"
+#include "traits/leaf_surfaces.h"
+
+#include "cloud/linear.h"
+
+#include <math.h>
+
+static bool has_midrib(const plm_organ *leaf, plm_estimate *out)
+{
+    if (!plm_leaf_has_surface(leaf, out)) return false;
+    if (leaf->midrib) {
+        out->method = leaf->midrib->method;
+        return true;
+    }
+    plm_not_applicable(out, "neither a petiole nor a stem tells where the leaf begins");
+    return false;
+}
+
+plm_status plm_trait_leaf_length(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out, plm_error *error)
+{
+    (void)scene, (void)error;
+    if (!has_midrib(leaf, out)) return PLM_OK;
+    out->value = leaf->midrib->length;
+    out->std_error = leaf->midrib->length_error;
+    return PLM_OK;
+}
+
+plm_status plm_trait_leaf_width(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out, plm_error *error)
+{
+    (void)scene, (void)error;
+    if (!has_midrib(leaf, out)) return PLM_OK;
+    out->value = leaf->midrib->width;
+    out->std_error = leaf->midrib->width_error;
+    return PLM_OK;
+}
+
+/* Direction of (x, y) from +x towards +y, 0 to 2 pi, and its standard error for an error e of each end. */
+static plm_status point_azimuth(double x, double y, double e, plm_estimate *out)
+{
+    const double length = hypot(x, y);
+    if (!(length > 2 * e))
+        return plm_not_applicable(out, "seen from above, the two ends are only %.2g mm apart", 1e3 * length);
+    const double angle = atan2(y, x);
+    out->value = angle < 0 ? angle + 2 * PLM_PI : angle;
+    out->std_error = e / length;
+    return PLM_OK;
+}
+
+plm_status plm_trait_leaf_azimuth(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out, plm_error *error)
+{
+    (void)scene, (void)error;
+    if (!has_midrib(leaf, out)) return PLM_OK;
+    const plm_midrib *midrib = leaf->midrib;
+    const double e = hypot(midrib->end_error * sqrt(2), 0.015 * midrib->length);
+    return point_azimuth(midrib->tip[0] - midrib->base[0], midrib->tip[1] - midrib->base[1], e, out);
+}
+
+/* Mean of the main stem's lowest points: those within a share of its height, and at least so many. */
+static bool find_stem_base(const plm_scene *scene, double base[2], double *error_of_base)
+{
+    static const double lowest_share = 0.02, fewest_metres = 0.002;
+    const plm_organ *stem = plm_scene_organ(scene, PLM_LABEL_STEM, 0);
+    if (!stem || stem->count == 0) return false;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < stem->count; i++) {
+        low = fmin(low, stem->xyz[i][2]);
+        high = fmax(high, stem->xyz[i][2]);
+    }
+    const double limit = low + fmax(lowest_share * (high - low), fewest_metres);
+    double sum[2] = {0, 0}, squares = 0, count = 0;
+    for (size_t i = 0; i < stem->count; i++) {
+        if (stem->xyz[i][2] > limit) continue;
+        for (int k = 0; k < 2; k++) sum[k] += stem->xyz[i][k];
+        count++;
+    }
+    for (int k = 0; k < 2; k++) base[k] = sum[k] / count;
+    for (size_t i = 0; i < stem->count; i++) {
+        if (stem->xyz[i][2] > limit) continue;
+        for (int k = 0; k < 2; k++) squares += (stem->xyz[i][k] - base[k]) * (stem->xyz[i][k] - base[k]);
+    }
+    *error_of_base = 0.3 * sqrt(squares / count); /* seen from some sides more than from others */
+    return true;
+}
+
+plm_status plm_trait_leaf_azimuth_from_stem(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
+                                            plm_error *error)
+{
+    (void)error;
+    double base[2], of_base;
+    if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
+    if (!find_stem_base(scene, base, &of_base)) return plm_not_applicable(out, "the plant has no stem");
+    const double *centroid = leaf->surface.plane.centroid;
+    const double of_leaf = 0.5 * leaf->surface.spacing + 0.2 * leaf->surface.noise;
+    out->method = "stem base to area centroid";
+    return point_azimuth(centroid[0] - base[0], centroid[1] - base[1], hypot(of_base, of_leaf), out);
+}

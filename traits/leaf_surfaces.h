@@ -1,0 +1,13 @@
+/* traits/leaf_surfaces.h: what the traits of leaves ask of a surface. Internal. */
+#ifndef PLANTIMETER_TRAITS_LEAF_SURFACES_H
+#define PLANTIMETER_TRAITS_LEAF_SURFACES_H
+
+#include "traits/scene.h"
+
+/** Flags of a surface as flags of an estimate (PLM_FLAG_...). */
+unsigned plm_surface_estimate_flags(const plm_leaf_surface *surface);
+
+/** Whether the leaf has a surface; if not, out says why. */
+bool plm_leaf_has_surface(const plm_organ *leaf, plm_estimate *out);
+
+#endif
