@@ -1,7 +1,10 @@
 # Plantimeter: one word a job. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test asan fuzz docs format tidy clean
+.PHONY: help packages build demo test asan fuzz bench docs format tidy clean
 JOBS ?= $(shell nproc)
+# Goals that `make bench` measures: BENCH=all, BENCH=P1,P9; BENCH_CSV=FILE appends the rows to a file.
+BENCH ?= P1,P9,P10,P12
+BENCH_CSV ?=
 # Seconds that each fuzz target runs in `make fuzz`.
 FUZZ_SECONDS ?= 10
 
@@ -32,6 +35,9 @@ fuzz: packages ## run each fuzz target for FUZZ_SECONDS
 	@cmake --preset fuzz >/dev/null
 	@cmake --build build/fuzz -j $(JOBS) --target fuzzers
 	@sh tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
+
+bench: build ## measure speed against PCL, FLANN, CGAL and qhull, as ratios
+	@sh bench/run.sh build/release/bench $(BENCH) $(BENCH_CSV)
 
 docs: build ## build the API reference in build/docs (no warnings allowed) and refresh docs/traits.md
 	@build/release/plantimeter traits --markdown >docs/traits.md

@@ -1,7 +1,6 @@
 /* bench/bench_read.cpp: goal P12: a binary PLY of 5 million points against pcl_io, against `cat` and against a copy; text
- * in MB/s; peak memory against the cloud's. Medians of alternated repeats.
- *
- *   bench_read [POINTS [REPEATS]] */
+ * in MB/s; peak memory against the cloud's. */
+#include "bench.hpp"
 #include "cloud/guard.hpp"
 #include "io/io.h"
 
@@ -12,8 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -22,30 +19,7 @@
 
 namespace
 {
-double seconds()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> times)
-{
-    std::sort(times.begin(), times.end());
-    return times[times.size() / 2];
-}
-
-template <class Work> double timed(Work work)
-{
-    const double begin = seconds();
-    work();
-    return seconds() - begin;
-}
-
-void check(plm_status status, const plm_error &error)
-{
-    if (status == PLM_OK) return;
-    std::fprintf(stderr, "bench_read: %s\n", error.message);
-    std::exit(1);
-}
+using bench::check;
 
 plm_cloud make_cloud(size_t count)
 {
@@ -107,36 +81,43 @@ size_t write_file(const std::string &path, const plm_cloud &cloud)
     return size;
 }
 
-void bench_ply(const std::string &path, size_t size, size_t points, int repeats)
+void bench_ply(bench::Run &run, const std::string &path, size_t size, size_t points)
 {
-    const double peak = peak_bytes(path);
+    /* first: a process forked once threads of OpenMP wait would wait for them for ever */
+    const double peak = peak_bytes(path), cloud = 15 * static_cast<double>(points);
     const std::vector<char> bytes(size, 1);
     const std::string cat = "cat " + path + " >/dev/null";
-    std::vector<double> own, pcl, plain, copy;
-    for (int i = 0; i < repeats; i++) {
-        own.push_back(timed([&] { read_once(path); }));
-        plain.push_back(timed([&] {
-            if (std::system(cat.c_str()) != 0) std::exit(1);
-        }));
-        copy.push_back(timed([&] { copy_once(bytes); }));
-        pcl.push_back(timed([&] {
+    run.compare(
+        {"P12", "binary PLY, 5e6 points", "pcl_io loadPLYFile", 0.2, 0}, [&] { read_once(path); },
+        [&] {
             pcl::PointCloud<pcl::PointXYZRGB> cloud;
             pcl::io::loadPLYFile(path, cloud);
-        }));
-    }
-    const double allowed = 3 * median(plain) + median(copy);
-    std::printf("PLY, %zu points, %.0f MB: %.1f ms; pcl_io %.1f ms, cat %.1f ms, copy %.1f ms\n", points,
-                (double)size / 1e6, 1e3 * median(own), 1e3 * median(pcl), 1e3 * median(plain), 1e3 * median(copy));
-    std::printf("P12 own / pcl_io               %.3f (goal 0.2)\n", median(own) / median(pcl));
-    std::printf("    own / (3 cat + copy)       %.3f (goal 1)\n", median(own) / allowed);
-    std::printf("    peak memory / cloud        %.3f (goal 2)\n", peak / (15 * (double)points));
+        });
+    run.compare(
+        {"P12", "binary PLY, 5e6 points", "cat three times and a copy", 1, 0}, [&] { read_once(path); },
+        [&] {
+            for (int i = 0; i < 3; i++)
+                if (std::system(cat.c_str()) != 0) bench::Run::fail("cat failed");
+            copy_once(bytes);
+        });
+    run.report({"P12", "peak memory of reading", "bytes of the cloud", 2, 0}, peak / 1e6, cloud / 1e6, peak / cloud,
+               "MB");
+}
+
+void bench_text(bench::Run &run, const std::string &path, size_t size)
+{
+    std::vector<double> times;
+    for (int i = 0; i < 5; i++) times.push_back(bench::timed(0, [&] { read_once(path); }));
+    const double seconds = bench::median(times), allowed = static_cast<double>(size) / 50e6;
+    run.report({"P12", "text, 1e6 points", "50 MB a second", 1, 0}, seconds, allowed, seconds / allowed, "s");
 }
 } // namespace
 
 int main(int count, char **arguments)
 {
-    const size_t points = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : 5000000;
-    const int repeats = count > 2 ? std::atoi(arguments[2]) : 9;
+    bench::Run run(count, arguments);
+    if (!run.wanted("P12")) return 0;
+    const size_t points = run.points(5e6);
     const char *base = std::getenv("TMPDIR");
     std::string folder = std::string(base ? base : P_tmpdir) + "/bench_read_XXXXXX";
     if (!mkdtemp(folder.data())) return 1;
@@ -146,13 +127,10 @@ int main(int count, char **arguments)
     cloud.count = points / 5;
     const size_t text_size = write_file(text, cloud);
     plm_cloud_free(&cloud);
-    bench_ply(ply, ply_size, points, repeats);
-    std::vector<double> times;
-    for (int i = 0; i < repeats; i++) times.push_back(timed([&] { read_once(text); }));
-    std::printf("text, %zu points, %.0f MB: %.1f ms, %.0f MB/s (goal 50)\n", points / 5, (double)text_size / 1e6,
-                1e3 * median(times), (double)text_size / 1e6 / median(times));
+    bench_ply(run, ply, ply_size, points);
+    bench_text(run, text, text_size);
     std::remove(ply.c_str());
     std::remove(text.c_str());
     rmdir(folder.c_str());
-    return 0;
+    return run.end();
 }

@@ -301,7 +301,7 @@ static void sort_hits(uint32_t *row, float *squared, size_t count)
         heap_sort(row, squared, count);
 }
 
-/** Where plm_index_table writes. */
+/** Where plm_neighbour_table writes. */
 typedef struct table {
     size_t k;
     uint32_t *row;
@@ -322,10 +322,16 @@ static void write_line(void *user, const plm_neighbourhood *found)
     }
 }
 
-plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error)
+plm_status plm_neighbour_table(const float (*xyz)[3], size_t count, size_t k, uint32_t *row, float *squared,
+                               plm_error *error)
 {
     table to = {k, row, squared};
-    return plm_all_nearest(index->xyz, index->count, k, write_line, &to, error);
+    return plm_all_nearest(xyz, count, k, write_line, &to, error);
+}
+
+plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error)
+{
+    return plm_neighbour_table(index->xyz, index->count, k, row, squared, error);
 }
 
 size_t plm_index_ball(const plm_index *index, const float query[3], float radius, size_t room, uint32_t *row,

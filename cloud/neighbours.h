@@ -34,8 +34,13 @@ size_t plm_index_neighbours(const plm_index *index, uint32_t point, size_t k, ui
 size_t plm_index_ball(const plm_index *index, const float query[3], float radius, size_t room, uint32_t *row,
                       float *squared);
 
-/** k nearest neighbours of every indexed point, the point itself left out: row[i * k + j], squared[i * k + j] (either
- * may be NULL), each row of the table sorted; duplicates of a point are neighbours at distance 0. Parallel. */
+/** k nearest neighbours (1 to 1024) of every one of count points, the point itself left out: row[i * k + j],
+ * squared[i * k + j] (either may be NULL), each line of the table sorted; duplicates of a point are neighbours at distance
+ * 0. Needs no index. Parallel. */
+plm_status plm_neighbour_table(const float (*xyz)[3], size_t count, size_t k, uint32_t *row, float *squared,
+                               plm_error *error);
+
+/** The same for the points of an index. */
 plm_status plm_index_table(const plm_index *index, size_t k, uint32_t *row, float *squared, plm_error *error);
 
 #endif

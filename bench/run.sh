@@ -1,0 +1,11 @@
+#!/bin/sh
+# Runs the benchmarks of a build folder and prints one table: a row a goal, ratios of our figure to the rival's (the less
+# the better). $1: folder of the benchmarks; $2: goals, as P1,P9 or all; $3: CSV file to append to, or nothing.
+set -eu
+BENCH_COMMIT=$(git rev-parse --short HEAD 2>/dev/null || true)
+export BENCH_COMMIT
+printf '%-4s %-44s %9s %-5s %-34s %9s  %6s  %5s  %s\n' goal what ours unit rival theirs ratio most met
+for program in "$1"/bench_*; do
+    [ -x "$program" ] || continue
+    "$program" --only "$2" ${3:+--csv "$3"}
+done
