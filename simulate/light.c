@@ -28,11 +28,16 @@ void plm_light_defaults(plm_light_options *options)
                                    .depth = 10};
 }
 
+typedef struct light_source {
+    double up[3], u[3], v[3];
+} light_source;
+
 /* Everything that a ray needs to know. */
 typedef struct light_run {
     const plm_mesh *mesh;
     const plm_light_options *options;
     const plm_rays *rays;
+    light_source *source;
     double (*normal)[3];           /* of every face */
     double centre[3], radius, gap; /* gap: how far off a face a new ray starts */
     double absorptance[PLM_LIGHT_BANDS];
@@ -57,19 +62,29 @@ static void spread(uint64_t key, uint64_t k, double draw[5])
     }
 }
 
-/* Start of a ray: on the disc across the source's direction that covers the sphere. */
-static void start_ray(const light_run *run, int source, const double draw[2], double origin[3], double direction[3])
+/* Direction to each source, and two axes across it. */
+static void place_sources(light_run *run)
 {
-    const int circle = source / run->options->around, place = source % run->options->around;
-    const double elevation = 0.5 * PLM_PI * (circle + 0.5) / run->options->circles;
-    const double azimuth = 2 * PLM_PI * (place + 0.5 * (circle % 2)) / run->options->around;
-    const double up[3] = {cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation)};
-    double u[3], v[3];
-    const double r = run->radius * sqrt(draw[0]), a = 2 * PLM_PI * draw[1];
-    plm_frame_of_axis(up, u, v);
+    for (int k = 0; k < run->options->circles * run->options->around; k++) {
+        const int circle = k / run->options->around, place = k % run->options->around;
+        const double elevation = 0.5 * PLM_PI * (circle + 0.5) / run->options->circles;
+        const double azimuth = 2 * PLM_PI * (place + 0.5 * (circle % 2)) / run->options->around;
+        light_source *source = &run->source[k];
+        source->up[0] = cos(elevation) * cos(azimuth);
+        source->up[1] = cos(elevation) * sin(azimuth);
+        source->up[2] = sin(elevation);
+        plm_frame_of_axis(source->up, source->u, source->v);
+    }
+}
+
+/* Start of a ray: on the disc across the source's direction that covers the sphere. */
+static void start_ray(const light_run *run, int number, const double draw[2], double origin[3], double direction[3])
+{
+    const light_source *source = &run->source[number];
+    const double r = run->radius * sqrt(draw[0]), a = 2 * PLM_PI * draw[1], x = r * cos(a), y = r * sin(a);
     for (int i = 0; i < 3; i++) {
-        direction[i] = -up[i];
-        origin[i] = run->centre[i] + 1.01 * run->radius * up[i] + r * (cos(a) * u[i] + sin(a) * v[i]);
+        direction[i] = -source->up[i];
+        origin[i] = run->centre[i] + 1.01 * run->radius * source->up[i] + x * source->u[i] + y * source->v[i];
     }
 }
 
@@ -294,16 +309,19 @@ plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_group, size
     for (int b = 0; b < PLM_LIGHT_BANDS; b++)
         run.absorptance[b] = fmax(1 - options->reflectance[b] - options->transmittance[b], 0);
     run.normal = plm_alloc(mesh->triangle_count, sizeof *run.normal, error);
+    run.source = plm_alloc((size_t)(options->circles * options->around), sizeof *run.source, error);
     made.face_power = plm_alloc(mesh->triangle_count, sizeof *made.face_power, error);
     made.group_power = plm_alloc(group_count, sizeof *made.group_power, error);
     made.group_std_error = plm_alloc(group_count, sizeof *made.group_std_error, error);
-    if (!run.normal || !made.face_power || !made.group_power || !made.group_std_error) status = PLM_E_MEMORY;
+    if (!run.normal || !run.source || !made.face_power || !made.group_power || !made.group_std_error)
+        status = PLM_E_MEMORY;
     if (status == PLM_OK)
         status = plm_rays_build((const double(*)[3])mesh->vertex, mesh->vertex_count,
                                 (const uint32_t(*)[3])mesh->triangle, 0, mesh->triangle_count, &rays, error);
     if (status == PLM_OK) {
         normals(mesh, run.normal);
         place_sphere(&run);
+        place_sources(&run);
         run.rays = rays;
         status = trace_all(&run, face_group, group_count, &made, error);
     }
@@ -313,6 +331,7 @@ plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_group, size
         plm_light_free(&made);
     plm_rays_free(rays);
     plm_free(run.normal);
+    plm_free(run.source);
     return status;
 }
 

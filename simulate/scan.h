@@ -87,6 +87,16 @@ plm_status plm_scan_uniform(const plm_stage_set *stage, const plm_scan_options *
 plm_status plm_scan_splat(const plm_stage_set *stage, const plm_scan_options *options, plm_samples *samples,
                           plm_scan *scan, plm_error *error);
 
+/** Casts the given number of rays from every scanner of the dome. Samples (may be NULL) get the hits in the order of the rays;
+ * hits: out, those on the plant, added. */
+plm_status plm_dome_cast(const plm_stage_set *stage, const plm_scan_options *options, uint64_t rays,
+                         plm_samples *samples, size_t *hits, plm_error *error);
+
+/** Rays a scanner that give about `wanted` hits on the plant (never fewer, but for the chance of one in a billion), from a trial.
+ * PLM_E_DEGENERATE when none meets it. */
+plm_status plm_dome_rays(const plm_stage_set *stage, const plm_scan_options *options, size_t wanted, uint64_t *rays,
+                         plm_error *error);
+
 /** Positions that a scanner sees from; at most room of them. Gives how many. */
 enum { PLM_DOME_LAYERS = 13, PLM_DOME_AROUND = 25, PLM_POSITIONS_MAXIMUM = 1024 };
 size_t plm_dome_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3]);

@@ -40,44 +40,56 @@ static void ray_direction(const plm_stage_set *stage, const double from[3], uint
     for (int i = 0; i < 3; i++) direction[i] = cosine * axis[i] + away * (cos(round) * u[i] + sin(round) * v[i]);
 }
 
-typedef struct dome_scan {
-    const plm_stage_set *stage;
-    const plm_scan_options *options;
-    size_t count;
-    double position[PLM_DOME_LAYERS * PLM_DOME_AROUND][3];
-} dome_scan;
-
-/* Rays [first, last) of every scanner; hits go to samples in the order of the rays. hits: of the plant. */
-static plm_status cast(const dome_scan *dome, uint64_t first, uint64_t last, plm_samples *samples, size_t *hits,
-                       plm_error *error)
+/* All rays of scanner number s: hits to samples (where they are wanted) in the order of the rays. */
+static plm_status cast_scanner(const plm_stage_set *stage, const plm_scan_options *options, const double from[3],
+                               size_t s, uint64_t rays, bool is_wanted, plm_samples *samples, size_t *hits,
+                               plm_error *error)
 {
-    enum { CHUNK = 4096 };
+    const uint64_t key = plm_key(options->seed, 1000 + s);
     plm_status status = PLM_OK;
-    plm_sample *found = plm_alloc(CHUNK, sizeof *found, error);
-    if (!found) return PLM_E_MEMORY;
-    for (size_t s = 0; s < dome->count && status == PLM_OK; s++) {
-        const double *from = dome->position[s];
-        const uint64_t key = plm_key(dome->options->seed, 1000 + s);
-        for (uint64_t start = first; start < last && status == PLM_OK; start += CHUNK) {
-            const int count = (int)(last - start < CHUNK ? last - start : CHUNK);
-#pragma omp parallel for schedule(static)
-            for (int k = 0; k < count; k++) {
-                double direction[3];
-                plm_hit hit;
-                ray_direction(dome->stage, from, key, start + (uint64_t)k, direction);
-                found[k].face = PLM_NO_FACE;
-                if (!plm_rays_first(dome->stage->rays, from, direction, 0, INFINITY, &hit)) continue;
-                for (int i = 0; i < 3; i++) found[k].xyz[i] = (float)(from[i] + hit.t * direction[i]);
-                plm_sample_label(dome->stage, hit.face, direction, dome->options->seed, &found[k]);
-            }
-            for (int k = 0; k < count && status == PLM_OK; k++) {
-                if (found[k].face == PLM_NO_FACE) continue;
-                *hits += found[k].face < dome->stage->plant_faces;
-                if (samples) status = plm_samples_add(samples, &found[k], error);
-            }
+    for (uint64_t k = 0; k < rays && status == PLM_OK; k++) {
+        double direction[3];
+        plm_hit hit;
+        plm_sample sample;
+        ray_direction(stage, from, key, k, direction);
+        if (!plm_rays_first(stage->rays, from, direction, 0, INFINITY, &hit)) continue;
+        *hits += hit.face < stage->plant_faces;
+        if (!is_wanted) continue;
+        for (int i = 0; i < 3; i++) sample.xyz[i] = (float)(from[i] + hit.t * direction[i]);
+        plm_sample_label(stage, hit.face, direction, options->seed, &sample);
+        status = plm_samples_add(samples, &sample, error);
+    }
+    return status;
+}
+
+plm_status plm_dome_cast(const plm_stage_set *stage, const plm_scan_options *options, uint64_t rays,
+                         plm_samples *samples, size_t *hits, plm_error *error)
+{
+    enum { SCANNERS = PLM_DOME_LAYERS * PLM_DOME_AROUND };
+    double position[SCANNERS][3];
+    plm_samples part[SCANNERS] = {{0}};
+    plm_status status = PLM_OK;
+    plm_error first = {0};
+    size_t sum = 0;
+    plm_dome_positions(stage, options, position);
+#pragma omp parallel for schedule(dynamic) reduction(+ : sum)
+    for (int s = 0; s < SCANNERS; s++) {
+        plm_error own = {0};
+        const plm_status made =
+            cast_scanner(stage, options, position[s], (size_t)s, rays, samples != NULL, &part[s], &sum, &own);
+#pragma omp critical(plm_dome_status)
+        if (made != PLM_OK) {
+            status = made;
+            first = own;
         }
     }
-    plm_free(found);
+    if (status != PLM_OK && error) *error = first;
+    for (int s = 0; s < SCANNERS; s++) {
+        for (size_t k = 0; k < part[s].count && status == PLM_OK; k++)
+            status = plm_samples_add(samples, &part[s].sample[k], error);
+        plm_free(part[s].sample);
+    }
+    if (status == PLM_OK) *hits += sum;
     return status;
 }
 
@@ -109,22 +121,28 @@ static plm_status finish(const plm_stage_set *stage, const plm_scan_options *opt
     return plm_add_floaters(stage, options->outliers, options->seed, samples, error);
 }
 
+plm_status plm_dome_rays(const plm_stage_set *stage, const plm_scan_options *options, size_t wanted, uint64_t *rays,
+                         plm_error *error)
+{
+    enum { TRIAL = 512, MOST = 4000000 };
+    size_t hits = 0;
+    const plm_status status = plm_dome_cast(stage, options, TRIAL, NULL, &hits, error);
+    if (status != PLM_OK) return status;
+    if (!hits) return plm_fail(error, PLM_E_DEGENERATE, "of %d rays from each scanner none met the plant", TRIAL);
+    const double rate = fmax((double)hits - 6 * sqrt((double)hits), 0.1 * (double)hits) / TRIAL; /* 6 standard errors */
+    *rays = (uint64_t)fmin((double)wanted / rate + 64, MOST);
+    return PLM_OK;
+}
+
 plm_status plm_scan_dome(const plm_stage_set *stage, const plm_scan_options *options, plm_samples *samples,
                          plm_scan *scan, plm_error *error)
 {
-    enum { PILOT = 512, RAYS_MOST = 4000000 };
-    dome_scan dome = {.stage = stage, .options = options};
     const double area = plm_plant_area(stage->plant);
     const size_t wanted = options->points ? options->points : (size_t)(options->density * area + 0.5);
-    size_t trial = 0, hits = 0;
-    dome.count = plm_dome_positions(stage, options, dome.position);
-    plm_status status = cast(&dome, 0, PILOT, NULL, &trial, error);
-    if (status == PLM_OK && trial == 0)
-        status = plm_fail(error, PLM_E_DEGENERATE, "of %d rays none met the plant", PILOT * (int)dome.count);
-    /* 6 standard errors of the trial more than enough; what is too much is thinned out */
-    const double rate = status == PLM_OK ? ((double)trial - 6 * sqrt((double)trial)) / PILOT : 1;
-    const uint64_t rays = (uint64_t)fmin((double)wanted / fmax(rate, 0.1 * (double)trial / PILOT) + 64, RAYS_MOST);
-    if (status == PLM_OK) status = cast(&dome, 0, rays, samples, &hits, error);
+    size_t hits = 0;
+    uint64_t rays = 0;
+    plm_status status = plm_dome_rays(stage, options, wanted, &rays, error);
+    if (status == PLM_OK) status = plm_dome_cast(stage, options, rays, samples, &hits, error);
     if (status == PLM_OK && hits > wanted) thin(samples, stage, hits, wanted, options->seed);
     return status == PLM_OK ? finish(stage, options, area, samples, scan, error) : status;
 }

@@ -229,6 +229,65 @@ PLM_API plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_gro
 
 PLM_API void plm_light_free(plm_light *light);
 
+/* ---- Loss of geometry -------------------------------------------------------------------------------------------- */
+
+/** Which faces go first (laser-scanning paper). */
+typedef enum plm_loss {
+    PLM_LOSS_RANDOM = 0,
+    PLM_LOSS_INSIDE_OUT, /**< those nearest to the plant's axis */
+    PLM_LOSS_OUTSIDE_IN, /**< those farthest from it */
+    PLM_LOSS_COUNT
+} plm_loss;
+
+/** "random", "inside-out" or "outside-in". Static storage. */
+PLM_API const char *plm_loss_name(plm_loss loss);
+
+/** Traits that the study follows. */
+typedef enum plm_thinning_trait {
+    PLM_THIN_HEIGHT = 0, /**< highest point above the ground, m */
+    PLM_THIN_PCA1,       /**< of the cloud's ground projection, m */
+    PLM_THIN_PCA2,
+    PLM_THIN_HULL_VOLUME,   /**< m3 */
+    PLM_THIN_ABSORBED,      /**< absorbed radiation, W */
+    PLM_THIN_AREA,          /**< of the faces that are left, m2 */
+    PLM_THIN_VISIBLE_AREA,  /**< by the paper's rule, m2 */
+    PLM_THIN_VISIBLE_FACES, /**< share of the faces that are left */
+    PLM_THIN_POINTS,
+    PLM_THIN_SF_MEAN, /**< smoothness factor */
+    PLM_THIN_SF_SD,
+    PLM_THIN_SF_BOUNDARY, /**< share above 0.5 */
+    PLM_THIN_SF_T,        /**< Welch's t against the intact plant */
+    PLM_THIN_COUNT
+} plm_thinning_trait;
+
+/** "plant_height", "pca1", ... as the study's tables name them. Static storage. */
+PLM_API const char *plm_thinning_trait_name(plm_thinning_trait trait);
+
+typedef struct plm_thinning_options {
+    uint64_t seed;
+    double density;      /**< hits per m2 on the intact plant; 0: 0.105e6, the paper's tomato */
+    uint64_t light_rays; /**< 0: 1 million */
+    int neighbours;      /**< of the smoothness factor; 0: 16 */
+    /** Volume of the convex hull of points: hulls are made in mesh/, which this module does not know. */
+    plm_status (*hull)(const float (*xyz)[3], size_t count, double *volume, double *area, plm_mesh *mesh,
+                       plm_error *error);
+} plm_thinning_options;
+
+/** A plant that is being thinned: the intact one, the dome that looks at it, its light, and what each face's number of hits is
+ * compared with. Opaque. */
+typedef struct plm_thinning plm_thinning;
+
+/** Prepares a study of plant, which must outlive it. The dome's rays are set so that the intact plant gets the wanted
+ * density; all steps use the same rays and the same light. */
+PLM_API plm_status plm_thinning_start(const plm_virtual_plant *plant, const plm_thinning_options *options,
+                                      plm_thinning **thinning, plm_error *error);
+PLM_API void plm_thinning_free(plm_thinning *thinning);
+
+/** Removes loss_percent of the original number of faces and measures: value[PLM_THIN_COUNT]. loss_percent 0 is the intact
+ * plant. */
+PLM_API plm_status plm_thinning_step(const plm_thinning *thinning, plm_loss loss, double loss_percent,
+                                     double value[PLM_THIN_COUNT], plm_error *error);
+
 /* ---- Files ------------------------------------------------------------------------------------------------------- */
 
 /** The scan as PLY with everything that is known of each point: label, organ, leaflet where there are compound leaves, and
