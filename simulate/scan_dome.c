@@ -68,22 +68,15 @@ plm_status plm_dome_cast(const plm_stage_set *stage, const plm_scan_options *opt
     enum { SCANNERS = PLM_DOME_LAYERS * PLM_DOME_AROUND };
     double position[SCANNERS][3];
     plm_samples part[SCANNERS] = {{0}};
-    plm_status status = PLM_OK;
-    plm_error first = {0};
+    plm_status made[SCANNERS], status = PLM_OK;
     size_t sum = 0;
     plm_dome_positions(stage, options, position);
 #pragma omp parallel for schedule(dynamic) reduction(+ : sum)
-    for (int s = 0; s < SCANNERS; s++) {
-        plm_error own = {0};
-        const plm_status made =
-            cast_scanner(stage, options, position[s], (size_t)s, rays, samples != NULL, &part[s], &sum, &own);
-#pragma omp critical(plm_dome_status)
-        if (made != PLM_OK) {
-            status = made;
-            first = own;
-        }
-    }
-    if (status != PLM_OK && error) *error = first;
+    for (int s = 0; s < SCANNERS; s++) /* a message would be written by several threads: the status says enough */
+        made[s] = cast_scanner(stage, options, position[s], (size_t)s, rays, samples != NULL, &part[s], &sum, NULL);
+    for (int s = 0; s < SCANNERS && status == PLM_OK; s++)
+        if (made[s] != PLM_OK)
+            status = plm_fail(error, made[s], "scanner %d of the dome: %s", s, plm_status_name(made[s]));
     for (int s = 0; s < SCANNERS; s++) {
         for (size_t k = 0; k < part[s].count && status == PLM_OK; k++)
             status = plm_samples_add(samples, &part[s].sample[k], error);

@@ -1,4 +1,4 @@
-/* simulate/thinning.c: what loss of geometry does to traits (laser-scanning paper): faces are removed, the rest is scanned by the
+/* simulate/geometry_loss.c: what loss of geometry does to traits (laser-scanning paper): faces are removed, the rest is scanned by the
  * dome and lit. Rays and light stay those of the intact plant, so that a step shows the loss and not another draw. */
 #include <math.h>
 #include <stdlib.h>
