@@ -1,9 +1,12 @@
 /* io/output.c: the seam through which every file is written: beside its place, and then renamed, so that no reader ever
- * meets half a file. */
+ * meets half a file. Where the file system can, the file has no name until it is whole: then not even a killed program
+ * leaves anything behind. */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "io/io.h"
 #include "io/number.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +16,7 @@ struct plm_output {
     FILE *file;
     char *path, *part;
     bool is_broken;
+    bool is_nameless; /* the file gets its name at the end */
 };
 
 static void output_free(plm_output *output)
@@ -20,6 +24,44 @@ static void output_free(plm_output *output)
     plm_free(output->path);
     plm_free(output->part);
     plm_free(output);
+}
+
+/* The file under the descriptor, as a path that linkat follows. */
+static void descriptor_path(int descriptor, char path[64])
+{
+    snprintf(path, 64, "/proc/self/fd/%d", descriptor);
+}
+
+/* A file without a name in the folder of path; NULL where the system has none. */
+static FILE *open_nameless(const char *path)
+{
+#ifdef O_TMPFILE
+    char folder[4096], self[64];
+    const char *slash = strrchr(path, '/');
+    const size_t length = slash ? (size_t)(slash - path) : 0;
+    if (length >= sizeof folder) return NULL;
+    memcpy(folder, path, length);
+    folder[length] = 0;
+    const int descriptor = open(length ? folder : slash ? "/" : ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor < 0) return NULL;
+    descriptor_path(descriptor, self);
+    FILE *file = access(self, F_OK) == 0 ? fdopen(descriptor, "wb") : NULL;
+    if (!file) close(descriptor);
+    return file;
+#else
+    (void)path;
+    return NULL;
+#endif
+}
+
+/* Gives a nameless file its name beside its place, over what an earlier run may have left there. */
+static bool name_file(const plm_output *output)
+{
+    char self[64];
+    descriptor_path(fileno(output->file), self);
+    if (linkat(AT_FDCWD, self, AT_FDCWD, output->part, AT_SYMLINK_FOLLOW) == 0) return true;
+    return errno == EEXIST && unlink(output->part) == 0 &&
+           linkat(AT_FDCWD, self, AT_FDCWD, output->part, AT_SYMLINK_FOLLOW) == 0;
 }
 
 plm_status plm_output_open(const char *path, plm_output **output, plm_error *error)
@@ -36,7 +78,9 @@ plm_status plm_output_open(const char *path, plm_output **output, plm_error *err
     }
     memcpy(made->part, path, length);
     memcpy(made->part + length, ending, sizeof ending);
-    made->file = fopen(made->part, "wb");
+    made->file = open_nameless(path);
+    made->is_nameless = made->file != NULL;
+    if (!made->file) made->file = fopen(made->part, "wb");
     if (!made->file) {
         output_free(made);
         return plm_fail(error, PLM_E_WRITE, "%s: cannot be opened for writing: %s", path, strerror(errno));
@@ -73,9 +117,15 @@ plm_status plm_output_print(plm_output *output, plm_error *error, const char *fo
 plm_status plm_output_close(plm_output *output, bool ok, plm_error *error)
 {
     plm_status status = output->is_broken ? PLM_E_WRITE : PLM_OK;
+    if (fflush(output->file) != 0) status = broken(output, error);
+    bool is_named = !output->is_nameless;
+    if (ok && status == PLM_OK && !is_named) {
+        is_named = name_file(output);
+        if (!is_named) status = broken(output, error);
+    }
     if (fclose(output->file) != 0) status = broken(output, error);
     if (ok && status == PLM_OK && rename(output->part, output->path) != 0) status = broken(output, error);
-    if (!ok || status != PLM_OK) unlink(output->part);
+    if (is_named && (!ok || status != PLM_OK)) unlink(output->part);
     output_free(output);
     return status;
 }
