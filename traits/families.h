@@ -31,4 +31,38 @@ PLM_TRAIT_FUNCTION(plm_trait_leaf_width);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth_from_stem);
 
+/* traits/plant_height.c */
+PLM_TRAIT_FUNCTION(plm_trait_plant_height);
+PLM_TRAIT_FUNCTION(plm_trait_height_above_ground);
+PLM_TRAIT_FUNCTION(plm_trait_height_p98);
+PLM_TRAIT_FUNCTION(plm_trait_height_p99);
+PLM_TRAIT_FUNCTION(plm_trait_height_top10);
+
+/* traits/plant_extent.c */
+PLM_TRAIT_FUNCTION(plm_trait_plant_width);
+PLM_TRAIT_FUNCTION(plm_trait_box_x);
+PLM_TRAIT_FUNCTION(plm_trait_box_y);
+PLM_TRAIT_FUNCTION(plm_trait_box_z);
+PLM_TRAIT_FUNCTION(plm_trait_pca1);
+PLM_TRAIT_FUNCTION(plm_trait_pca2);
+PLM_TRAIT_FUNCTION(plm_trait_pca3d_1);
+PLM_TRAIT_FUNCTION(plm_trait_pca3d_2);
+PLM_TRAIT_FUNCTION(plm_trait_pca3d_3);
+
+/* traits/plant_hull.c */
+PLM_TRAIT_FUNCTION(plm_trait_hull_volume);
+PLM_TRAIT_FUNCTION(plm_trait_hull_area);
+
+/* traits/plant_area.c */
+PLM_TRAIT_FUNCTION(plm_trait_projected_area);
+
+/* traits/plant_colour.c */
+PLM_TRAIT_FUNCTION(plm_trait_gli);
+PLM_TRAIT_FUNCTION(plm_trait_hue_mean);
+
+/* traits/plant_smoothness.c */
+PLM_TRAIT_FUNCTION(plm_trait_smoothness_mean);
+PLM_TRAIT_FUNCTION(plm_trait_smoothness_sd);
+PLM_TRAIT_FUNCTION(plm_trait_boundary_share);
+
 #endif

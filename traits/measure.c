@@ -105,6 +105,20 @@ static plm_status gather_plant(plant_job *job, plm_error *error)
     return status;
 }
 
+static plm_status run_hull(plant_job *job, plm_error *error)
+{
+    const plm_status status = plm_scene_hull(&job->scene, error);
+    job->draft->hull = job->scene.hull; /* the traits need its numbers only */
+    job->scene.hull = (plm_mesh){0};
+    for (int axis = 0; axis < 3; axis++) job->draft->hull.origin[axis] += job->cloud->origin[axis];
+    return status;
+}
+
+static plm_status run_smoothness(plant_job *job, plm_error *error)
+{
+    return plm_scene_smoothness(&job->scene, error);
+}
+
 static plm_status run_index(plant_job *job, plm_error *error)
 {
     return plm_scene_index(&job->scene, error);
@@ -163,19 +177,6 @@ static plm_status run_surfaces(plant_job *job, plm_error *error)
     return status == PLM_OK ? plm_scene_leaf_mesh(&job->scene, &job->draft->leaves, error) : status;
 }
 
-/* Points without a hull (too few, all on one line) leave the reason to the traits that want it. */
-static plm_status run_hull(plant_job *job, plm_error *error)
-{
-    plm_scene *scene = &job->scene;
-    plm_error trouble = {0};
-    scene->hull_status = plm_convex_hull((const float(*)[3])scene->plant, scene->plant_count, &scene->hull_volume,
-                                         &scene->hull_area, &scene->hull, &trouble);
-    if (scene->hull_status == PLM_E_MEMORY || scene->hull_status == PLM_E_LIBRARY)
-        return plm_fail(error, scene->hull_status, "%s", trouble.message);
-    snprintf(scene->hull_reason, sizeof scene->hull_reason, "%.150s", trouble.message);
-    return PLM_OK;
-}
-
 static plm_status run_traits(plant_job *job, plm_error *error)
 {
     return plm_evaluate(&job->scene, job->chosen, &job->draft->value, &job->draft->value_count, error);
@@ -186,7 +187,8 @@ static plm_status run_traits(plant_job *job, plm_error *error)
 static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error) = {
     [PLM_STAGE_GROUND] = run_ground,     [PLM_STAGE_CLEAN] = run_clean,     [PLM_STAGE_FRAME] = run_frame,
     [PLM_STAGE_INDEX] = run_index,       [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs,
-    [PLM_STAGE_SURFACES] = run_surfaces, [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_SURFACES] = run_surfaces, [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_SMOOTHNESS] = run_smoothness,
+    [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)

@@ -43,9 +43,13 @@ struct plm_scene {
     plm_sampling sampling;  /* of the plant, as plant_index: else zero (but extent) */
     char organ_reason[160]; /* why the plant was not cut into organs; "" where it was */
     size_t organ_count;
-    plm_organ *organ; /* stems, then petioles, then leaves, each by number */
-    plm_mesh hull;    /* of the plant */
-    double hull_volume, hull_area;
+    plm_organ *organ;              /* stems, then petioles, then leaves, each by number */
+    plm_mesh hull;                 /* of the plant */
+    double hull_volume, hull_area; /* corrected for sampling and noise */
+    double hull_volume_error, hull_area_error;
+    bool hull_is_sheet; /* too thin against the noise for a volume */
+    const char *hull_method;
+    double smoothness_mean, smoothness_sd, boundary_share; /* NAN where not measured */
     plm_status hull_status;
     char hull_reason[160];
 };
@@ -73,6 +77,11 @@ plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error);
 
 /** All leaf surfaces as one mesh at the cloud's origin, face_organ the leaf's number; the caller's. */
 plm_status plm_scene_leaf_mesh(const plm_scene *scene, plm_mesh *mesh, plm_error *error);
+
+/** Measures the hull (traits/plant_hull.c) and the smoothness factors (traits/plant_smoothness.c) of the plant. What the points
+ * do not determine is left for the traits to tell. */
+plm_status plm_scene_hull(plm_scene *scene, plm_error *error);
+plm_status plm_scene_smoothness(plm_scene *scene, plm_error *error);
 
 void plm_scene_free(plm_scene *scene);
 

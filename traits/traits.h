@@ -44,7 +44,8 @@ enum {
     PLM_NEEDS_AXIS = 1 << 5,    /**< fitted axes of stems and petioles */
     PLM_NEEDS_HULL = 1 << 6,
     PLM_NEEDS_NEIGHBOURS = 1 << 7, /**< the fused neighbour pass */
-    PLM_NEEDS_COLOUR = 1 << 8
+    PLM_NEEDS_COLOUR = 1 << 8,
+    PLM_NEEDS_SAMPLING = 1 << 9 /**< spacing and noise of the plant */
 };
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;

@@ -1,0 +1,157 @@
+/* traits/plant_extent.c: how wide a plant is: bounding box, largest horizontal distance, extents along principal axes (laser-scanning
+ * paper, PCA1 and PCA2 of the ground projection). Extents are differences of extremes (traits/extreme.c): condition 1. The axes
+ * are area-weighted; where two eigenvalues are nearly equal the axes, not the plant, are ill-determined, and the standard
+ * error holds how the extent changes as the axis turns. */
+#include "cloud/linear.h"
+#include "cloud/voxel.h"
+#include "traits/extreme.h"
+#include "traits/families.h"
+#include "traits/scene.h"
+
+#include <math.h>
+
+static plm_status extent_along(const plm_scene *scene, const double axis[3], double *extent, double *std_error,
+                               plm_error *error)
+{
+    const double back[3] = {-axis[0], -axis[1], -axis[2]};
+    plm_extreme one, other;
+    plm_status status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, axis, &one, error);
+    if (status == PLM_OK)
+        status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, back, &other, error);
+    if (status != PLM_OK) return status;
+    *extent = one.value + other.value;
+    *std_error = hypot(one.std_error, other.std_error);
+    return PLM_OK;
+}
+
+static plm_status box_length(const plm_scene *scene, int axis, plm_estimate *out, plm_error *error)
+{
+    double direction[3] = {0};
+    direction[axis] = 1;
+    out->method = "extremes of the surface";
+    return extent_along(scene, direction, &out->value, &out->std_error, error);
+}
+
+plm_status plm_trait_box_x(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
+{
+    (void)organ;
+    return box_length(scene, 0, out, error);
+}
+
+plm_status plm_trait_box_y(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
+{
+    (void)organ;
+    return box_length(scene, 1, out, error);
+}
+
+plm_status plm_trait_box_z(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
+{
+    (void)organ;
+    return box_length(scene, 2, out, error);
+}
+
+/* ---- Largest horizontal distance --------------------------------------------------------------------------------- */
+
+/* The direction of the widest pair of points: rows are taken to their support points along 180 directions first, as
+ * only those can be the widest pair to within 1 - cos(0.5 degrees) of its length. */
+static double widest_direction(const float (*xyz)[3], size_t count, double direction[3])
+{
+    enum { DIRECTIONS = 360 };
+    uint32_t support[DIRECTIONS];
+#pragma omp parallel for schedule(static)
+    for (int d = 0; d < DIRECTIONS; d++) {
+        const float c = (float)cos(PLM_PI * d / (DIRECTIONS / 2)), s = (float)sin(PLM_PI * d / (DIRECTIONS / 2));
+        float best = -INFINITY;
+        support[d] = 0;
+        for (size_t i = 0; i < count; i++) {
+            const float along = xyz[i][0] * c + xyz[i][1] * s;
+            if (along > best) best = along, support[d] = (uint32_t)i;
+        }
+    }
+    double widest = -1;
+    for (int a = 0; a < DIRECTIONS; a++)
+        for (int b = a + 1; b < DIRECTIONS; b++) {
+            const double x = xyz[support[a]][0] - xyz[support[b]][0], y = xyz[support[a]][1] - xyz[support[b]][1];
+            const double length = hypot(x, y);
+            if (length <= widest) continue;
+            widest = length;
+            direction[0] = length > 0 ? x / length : 1;
+            direction[1] = length > 0 ? y / length : 0;
+        }
+    direction[2] = 0;
+    return widest;
+}
+
+plm_status plm_trait_plant_width(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
+{
+    (void)organ;
+    double direction[3];
+    widest_direction((const float(*)[3])scene->plant, scene->plant_count, direction);
+    out->method = "widest pair";
+    return extent_along(scene, direction, &out->value, &out->std_error, error);
+}
+
+/* ---- Principal axes ----------------------------------------------------------------------------------------------- */
+
+/* Second moments of the plant, a voxel counting as one piece of area. flat: of the ground projection. */
+static plm_status principal_axes(const plm_scene *scene, bool flat, double value[3], double axis[3][3],
+                                 plm_error *error)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < scene->plant_count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], scene->plant[i][k]);
+            high[k] = fmaxf(high[k], scene->plant[i][k]);
+        }
+    const double size = fmax(fmax((double)high[0] - low[0], (double)high[1] - low[1]), (double)high[2] - low[2]);
+    if (!(size > 0)) return plm_fail(error, PLM_E_DEGENERATE, "all points of the plant are in one place");
+    plm_voxels voxels = {0};
+    plm_status status = plm_voxel_thin((const float(*)[3])scene->plant, scene->plant_count, size / 200, &voxels, error);
+    if (status != PLM_OK) return status;
+    double mean[3] = {0}, m[6] = {0};
+    for (size_t i = 0; i < voxels.count; i++)
+        for (int k = 0; k < 3; k++) mean[k] += voxels.xyz[i][k];
+    for (int k = 0; k < 3; k++) mean[k] /= (double)voxels.count;
+    for (size_t i = 0; i < voxels.count; i++) {
+        const double x = voxels.xyz[i][0] - mean[0], y = voxels.xyz[i][1] - mean[1];
+        const double z = flat ? 0 : voxels.xyz[i][2] - mean[2];
+        m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
+    }
+    for (int k = 0; k < 6; k++) m[k] /= (double)voxels.count;
+    plm_eigen3(m, value, axis);
+    plm_voxels_free(&voxels);
+    return PLM_OK;
+}
+
+/* Extent along axis `which`; its standard error holds the turn of the axis against its neighbour in size. */
+static plm_status principal_extent(const plm_scene *scene, bool flat, int which, plm_estimate *out, plm_error *error)
+{
+    double value[3], axis[3][3];
+    plm_status status = principal_axes(scene, flat, value, axis, error);
+    if (status != PLM_OK) return status;
+    status = extent_along(scene, axis[which], &out->value, &out->std_error, error);
+    if (status != PLM_OK) return status;
+    const int other = flat ? 1 - which : which == 1 ? (value[0] - value[1] < value[1] - value[2] ? 0 : 2) : 1;
+    const double gap = fabs(value[which] - value[other]) / fmax(value[which], value[other]);
+    /* The axis turns by about 1 % of itself over the relative gap: voxels stand for area to a few per cent each. */
+    const double turn = fmin(0.01 / fmax(gap, 1e-3), 0.8);
+    double turned[3], extent, ignored;
+    for (int k = 0; k < 3; k++) turned[k] = cos(turn) * axis[which][k] + sin(turn) * axis[other][k];
+    status = extent_along(scene, turned, &extent, &ignored, error);
+    if (status == PLM_OK) out->std_error = hypot(out->std_error, extent - out->value);
+    out->method = "extent along principal axis";
+    return status;
+}
+
+#define PRINCIPAL(name, flat, which)                                                                                   \
+    plm_status name(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)               \
+    {                                                                                                                  \
+        (void)organ;                                                                                                   \
+        return principal_extent(scene, flat, which, out, error);                                                       \
+    }
+
+PRINCIPAL(plm_trait_pca1, true, 0)
+PRINCIPAL(plm_trait_pca2, true, 1)
+PRINCIPAL(plm_trait_pca3d_1, false, 0)
+PRINCIPAL(plm_trait_pca3d_2, false, 1)
+PRINCIPAL(plm_trait_pca3d_3, false, 2)
