@@ -9,6 +9,7 @@
 
 static const double usual_weight = 0.12;
 static const double units_per_capital = 70;
+static const double tracking = 4; /* units between letters beside what they bring */
 static const plm_rgb halo_colour = {255, 255, 255};
 
 plm_status plm_canvas_create(int width, int height, plm_rgb background, plm_canvas *canvas, plm_error *error)
@@ -109,7 +110,7 @@ static double draw_text(plm_canvas *canvas, double x, double y, const char *text
     while (*text) {
         const plm_letter *letter = plm_letter_find(plm_letter_next(&text));
         draw_letter(canvas, letter, x, y, size, width, colour);
-        x += letter->advance * size / units_per_capital;
+        x += (letter->advance + tracking) * size / units_per_capital;
     }
     return x;
 }
@@ -124,6 +125,6 @@ double plm_canvas_text(plm_canvas *canvas, double x, double y, const char *text,
 double plm_text_width(const char *text, double size)
 {
     double units = 0;
-    while (*text) units += plm_letter_find(plm_letter_next(&text))->advance;
+    while (*text) units += plm_letter_find(plm_letter_next(&text))->advance + tracking;
     return units * size / units_per_capital;
 }

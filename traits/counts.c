@@ -3,7 +3,8 @@
 #include "traits/families.h"
 #include "traits/scene.h"
 
-#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 plm_status plm_trait_leaf_count(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
@@ -19,21 +20,33 @@ plm_status plm_trait_leaf_count(const plm_scene *scene, const plm_organ *organ, 
     return PLM_OK;
 }
 
-/* Leaflets are numbered from 0 within their leaf. */
-static size_t leaflets_of(const plm_organ *leaf)
+static int compare_numbers(const void *a, const void *b)
 {
-    int32_t highest = -1;
-    for (size_t i = 0; i < leaf->count; i++)
-        if (leaf->leaflet[i] > highest) highest = leaf->leaflet[i];
-    return (size_t)(highest + 1);
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* How many different leaflet numbers a leaf's points have. */
+static plm_status count_leaflets(const plm_organ *leaf, size_t *count, plm_error *error)
+{
+    int32_t *number = plm_alloc(leaf->count, sizeof *number, error);
+    if (!number) return PLM_E_MEMORY;
+    memcpy(number, leaf->leaflet, leaf->count * sizeof *number);
+    qsort(number, leaf->count, sizeof *number, compare_numbers);
+    for (size_t i = 0; i < leaf->count; i++) *count += number[i] >= 0 && (i == 0 || number[i] != number[i - 1]);
+    plm_free(number);
+    return PLM_OK;
 }
 
 plm_status plm_trait_leaflet_count(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
-    (void)organ, (void)error;
+    (void)organ;
     size_t count = 0;
-    for (size_t i = 0; i < scene->organ_count; i++)
-        if (scene->organ[i].leaflet) count += leaflets_of(&scene->organ[i]);
+    for (size_t i = 0; i < scene->organ_count; i++) {
+        if (!scene->organ[i].leaflet) continue;
+        const plm_status status = count_leaflets(&scene->organ[i], &count, error);
+        if (status != PLM_OK) return status;
+    }
     if (count == 0) return plm_not_applicable(out, "no compound leaves were found");
     out->value = (double)count;
     out->method = "blades of compound leaves";
