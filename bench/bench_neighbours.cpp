@@ -1,4 +1,4 @@
-/* bench/bench_neighbours.cpp: goals P1 to P8 and P13, all nearest neighbours and what is measured from them, against PCL and
+/* bench/bench_neighbours.cpp: goals P1 to P4, P6 to P8 and P13 (P5: bench/instructions.sh), all nearest neighbours and what is measured from them, against PCL and
  * FLANN on the same points in the same (random) order. Own sorting is counted. */
 #include "bench.hpp"
 #include "clouds.hpp"
@@ -94,13 +94,13 @@ std::vector<float> smoothness_by_pcl(const bench::Cloud &cloud, const pcl::Point
     return smoothness;
 }
 
-void table_by_flann(const bench::Cloud &cloud, std::vector<int> &row, std::vector<float> &squared)
+void table_by_flann(const bench::Cloud &cloud, std::vector<int> &row, std::vector<float> &squared, int leaf)
 {
     constexpr size_t chunk =
         65536; /* rows asked at once: with all of them FLANN is slower and takes 4 times the memory */
     FLANNParameters parameters = DEFAULT_FLANN_PARAMETERS;
     parameters.algorithm = FLANN_INDEX_KDTREE_SINGLE;
-    parameters.leaf_max_size = 32;
+    parameters.leaf_max_size = leaf;
     parameters.eps = 0;
     parameters.cores = omp_get_max_threads();
     float speedup;
@@ -230,7 +230,7 @@ void p6_table(bench::Run &run, const bench::Cloud &cloud)
     std::vector<float> flann_squared(flann_row.size());
     run.compare(
         {"P6", "kNN table, 1e6 points of a plant, 1 thread", "FLANN C, points sorted for it", 0.85, 1},
-        [&] { table_by_us(cloud, row, squared); }, [&] { table_by_flann(sorted, flann_row, flann_squared); });
+        [&] { table_by_us(cloud, row, squared); }, [&] { table_by_flann(sorted, flann_row, flann_squared, 32); });
 }
 
 void p7_fused(bench::Run &run, const bench::Cloud &cloud)
@@ -287,10 +287,29 @@ void p8_memory(bench::Run &run, const bench::Cloud &cloud)
                used / raw, "MB");
 }
 
+/** One run of one rival on 1e5 points and one thread, for bench/instructions.sh to count its instructions (goal P5). */
+int run_once(const std::string &who)
+{
+    omp_set_num_threads(1);
+    const bench::Cloud cloud = bench::box(100000);
+    std::vector<float> smoothness(cloud.size());
+    if (who == "ours") smoothness = smoothness_by_us(cloud);
+    if (who == "flann") {
+        std::vector<int> row(cloud.size() * (neighbours + 1));
+        std::vector<float> squared(row.size());
+        table_by_flann(cloud, row, squared, 16);
+        for (size_t i = 0; i < cloud.size(); i++)
+            smoothness[i] = smoothness_of(points_of(cloud), i, &row[i * (neighbours + 1)],
+                                          &squared[i * (neighbours + 1)], neighbours + 1);
+    }
+    return std::accumulate(smoothness.begin(), smoothness.end(), 0.0) < 0;
+}
+
 } // namespace
 
 int main(int count, char **arguments)
 {
+    if (count == 3 && std::string(arguments[1]) == "--once") return run_once(arguments[2]);
     bench::Run run(count, arguments);
     {
         const bench::Cloud plant = bench::plant(run.points(1e6));

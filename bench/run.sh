@@ -9,3 +9,6 @@ for program in "$1"/bench_*; do
     [ -x "$program" ] || continue
     "$program" --only "$2" ${3:+--csv "$3"}
 done
+case ,$2, in
+    *,P5,* | ,all,) sh "$(dirname "$0")/instructions.sh" "$1" ;;
+esac

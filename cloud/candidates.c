@@ -22,7 +22,7 @@ plm_status plm_candidates_reset(plm_candidates *list, size_t count, plm_error *e
 {
     list->count = 0;
     if (count + STEP <= list->room) return PLM_OK;
-    plm_candidates wider = {.room = 2 * (count + STEP), .guess = list->guess};
+    plm_candidates wider = {.room = count + count / 4 + STEP, .guess = list->guess};
     plm_candidates_free(list);
     wider.x = plm_alloc(wider.room, sizeof *wider.x, error);
     wider.y = plm_alloc(wider.room, sizeof *wider.y, error);

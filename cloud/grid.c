@@ -308,44 +308,60 @@ plm_range plm_grid_points(const plm_grid *grid, unsigned level, uint64_t number)
     return range;
 }
 
-/** Cuts a cell into leaves, in order. With leaf NULL they are only counted. */
-static void cut(const plm_grid *grid, plm_range points, unsigned level, double least, plm_leaf *leaf,
-                size_t *leaf_count)
+/** Leaves as they are cut; their number is not known before. */
+typedef struct leaf_list {
+    plm_leaf *leaf;
+    size_t count, room;
+    double least;
+} leaf_list;
+
+static plm_status add_leaf(leaf_list *list, plm_range points, unsigned level, plm_error *error)
+{
+    if (list->count == list->room) {
+        const size_t room = list->room + list->room / 2 + 64;
+        plm_leaf *wider = plm_realloc(list->leaf, room, sizeof *wider, error);
+        if (!wider) return PLM_E_MEMORY;
+        list->leaf = wider;
+        list->room = room;
+    }
+    list->leaf[list->count++] = (plm_leaf){points, level};
+    return PLM_OK;
+}
+
+/** Cuts a cell into leaves, in order. */
+static plm_status cut(const plm_grid *grid, plm_range points, unsigned level, leaf_list *list, plm_error *error)
 {
     uint32_t bound[9] = {points.begin};
+    const double size = points.end - points.begin;
     int parts = 0;
-    if (level > 0 && points.end - points.begin > least)
+    if (level > 0 && size > list->least)
         for (unsigned part = 0; part < 8; part++) {
-            const uint64_t first = (grid->key[points.begin] >> 3 * level << 3) | part;
-            bound[part + 1] =
-                lower_bound(grid->key, (plm_range){bound[part], points.end}, (first + 1) << 3 * (level - 1));
+            const uint64_t next = ((grid->key[points.begin] >> 3 * level << 3) | part) + 1;
+            bound[part + 1] = lower_bound(grid->key, (plm_range){bound[part], points.end}, next << 3 * (level - 1));
             parts += bound[part + 1] > bound[part];
         }
-    if (parts == 0 || points.end - points.begin < least * parts) {
-        if (leaf) leaf[*leaf_count] = (plm_leaf){points, level};
-        ++*leaf_count;
-        return;
-    }
-    for (unsigned part = 0; part < 8; part++)
+    if (parts == 0 || size < list->least * parts) return add_leaf(list, points, level, error);
+    plm_status status = PLM_OK;
+    for (unsigned part = 0; part < 8 && status == PLM_OK; part++)
         if (bound[part + 1] > bound[part])
-            cut(grid, (plm_range){bound[part], bound[part + 1]}, level - 1, least, leaf, leaf_count);
+            status = cut(grid, (plm_range){bound[part], bound[part + 1]}, level - 1, list, error);
+    return status;
 }
 
 static plm_status make_leaves(plm_grid *grid, double wanted, bool *suited, plm_error *error)
 {
+    leaf_list list = {.least = least_part * wanted};
     const plm_range all = {0, (uint32_t)grid->count};
-    size_t leaves = 0;
-    if (grid->count) cut(grid, all, grid->bits, least_part * wanted, NULL, &leaves);
-    grid->leaf = plm_alloc(leaves, sizeof *grid->leaf, error);
-    if (!grid->leaf) return PLM_E_MEMORY;
-    if (grid->count) cut(grid, all, grid->bits, least_part * wanted, grid->leaf, &grid->leaf_count);
+    const plm_status status = grid->count ? cut(grid, all, grid->bits, &list, error) : PLM_OK;
+    grid->leaf = list.leaf;
+    grid->leaf_count = list.count;
     double work = 0;
-    for (size_t i = 0; i < leaves; i++) {
-        const double size = grid->leaf[i].points.end - grid->leaf[i].points.begin;
+    for (size_t i = 0; i < list.count; i++) {
+        const double size = list.leaf[i].points.end - list.leaf[i].points.begin;
         work += size * size;
     }
     *suited = work <= WORST_CROWDING * wanted * (double)grid->count;
-    return PLM_OK;
+    return status;
 }
 
 plm_status plm_grid_build(const float (*xyz)[3], size_t count, size_t k, plm_grid *grid, bool *suited, plm_error *error)

@@ -7,7 +7,7 @@
 /** order (count long, the caller's): rows along a Morton curve through the points' bounding box; points in one cell of
  * the curve by their coordinates, equal points by row. So shuffled rows give the same sequence of points, and near
  * points lie near in memory. Finite coordinates are the caller's duty. O(count).
- * PLM_E_ARGUMENT  more than 2^32 - 1 points. */
+ * PLM_E_ARGUMENT  more than 2^32 - 2 points. */
 plm_status plm_spatial_order(const float (*xyz)[3], size_t count, uint32_t *order, plm_error *error);
 
 #endif
