@@ -146,6 +146,7 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     status = plm_sketch_make((const float(*)[3])xyz, count, options->point_budget, &sketch, error);
     if (status == PLM_OK) status = plm_sketch_tidy(&sketch, error);
     if (status == PLM_OK) status = plm_sketch_stem(&sketch, error);
+    if (status == PLM_OK) status = plm_sketch_stem_end(&sketch, error);
     if (status == PLM_OK) status = plm_sketch_leaves(&sketch, options->habit, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
     if (status != PLM_OK) goto done;

@@ -47,12 +47,15 @@ plm_status plm_sketch_tidy(plm_sketch *sketch, plm_error *error);
 /** Finds the main stem's centre line and marks its points. No stem: the path stays empty. */
 plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
 
+/** Takes back what of the path is the petiole of the topmost leaf. */
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error);
+
+/** Writes is_stem from the path. */
+void plm_sketch_mark_stem(plm_sketch *sketch);
+
 /** Finds the leaves: side groups, habit, leaves, leaflets. */
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error);
 
 void plm_sketch_free(plm_sketch *sketch);
-
-/** Distance of a point from the stem's centre line; radius and along (may be NULL): of the stem at the nearest place. */
-double plm_stem_distance(const plm_stem_path *stem, const float xyz[3], double *radius, double *along);
 
 #endif

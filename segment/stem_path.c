@@ -2,20 +2,20 @@
  * cheap and blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
 #include "cloud/linear.h"
 #include "segment/scratch.h"
-#include "segment/sketch.h"
+#include "segment/stem_fit.h"
 
 #include <string.h>
 
 static const double THICK = 0.5; /* of the stem's radius: a tube that may be stem */
 static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
-static const double THIN_END = 0.55;     /* of the lower stem's radius: the stem has become a petiole */
-static const double LOWER_SHARE = 0.6;   /* of the path: where the stem's radius is taken from */
-static const double RISE_LEAST = 0.2;    /* of the size: a plant that rises less has no stem */
-static const double STEP = 0.25;         /* nodes, in R */
-static const double WINDOW = 1;          /* half window of centring and of the radius, in R */
-static const double REACH = 2;           /* points within so many stem radii centre the path */
-static const double MARGIN = 1.5;        /* points within so many radii (plus sigma) are stem */
-static const double MARGIN_BLADE = 1.15; /* the same for points that look like blade */
+static const double THIN_END = 0.55;   /* of the lower stem's radius: the stem has become a petiole */
+static const double LOWER_SHARE = 0.6; /* of the path: where the stem's radius is taken from */
+static const double RISE_LEAST = 0.2;  /* of the size: a plant that rises less has no stem */
+static const double STEP = 0.25;       /* nodes, in R */
+static const double WINDOW = 1;        /* half window of centring and of the radius, in R */
+static const double REACH = 2;         /* points within so many stem radii centre the path */
+static const double MARGIN = 1.1;      /* points within so many radii (plus sigma) are stem */
+static double MARGIN_BLADE = 1.15;     /* the same for points that look like blade */
 enum { CENTRING_ROUNDS = 3 };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */
@@ -84,8 +84,7 @@ static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm
 
 /* ---- The centre line ------------------------------------------------------------------------------------------ */
 
-/* Nearest place on the polyline; beyond its ends the distance is to the end. */
-double plm_stem_distance(const plm_stem_path *stem, const float xyz[3], double *radius, double *along)
+double plm_stem_nearest(const plm_stem_path *stem, const float xyz[3], plm_stem_place *place)
 {
     double best = INFINITY;
     for (size_t k = 0; k + 1 < stem->count; k++) {
@@ -96,13 +95,14 @@ double plm_stem_distance(const plm_stem_path *stem, const float xyz[3], double *
         double t = length2 > 0 ? plm_dot(w, d) / length2 : 0;
         t = t < 0 ? 0 : t > 1 ? 1 : t;
         const double r[3] = {w[0] - t * d[0], w[1] - t * d[1], w[2] - t * d[2]};
-        const double here = plm_norm(r);
+        const double here = plm_dot(r, r);
         if (here >= best) continue;
         best = here;
-        if (radius) *radius = stem->radius[k] + t * (stem->radius[k + 1] - stem->radius[k]);
-        if (along) *along = stem->along[k] + t * (stem->along[k + 1] - stem->along[k]);
+        place->radius = stem->radius[k] + t * (stem->radius[k + 1] - stem->radius[k]);
+        place->along = stem->along[k] + t * (stem->along[k + 1] - stem->along[k]);
+        memcpy(place->offset, r, sizeof r);
     }
-    return best;
+    return sqrt(best);
 }
 
 static void measure_along(plm_stem_path *stem)
@@ -147,8 +147,7 @@ static plm_status resample(const plm_sketch *sketch, const uint32_t *chain, size
     return PLM_OK;
 }
 
-/* Box-smooths nodes over +-reach nodes; near the ends the window shrinks, so that they stay. */
-static void smooth_nodes(plm_stem_path *stem, size_t reach, double (*buffer)[3])
+void plm_stem_smooth(plm_stem_path *stem, size_t reach, double (*buffer)[3])
 {
     memcpy(buffer, stem->node, stem->count * sizeof *buffer);
     for (size_t n = 0; n < stem->count; n++) {
@@ -161,6 +160,7 @@ static void smooth_nodes(plm_stem_path *stem, size_t reach, double (*buffer)[3])
             stem->node[n][axis] = sum / (double)(2 * w + 1);
         }
     }
+    measure_along(stem);
 }
 
 /* Moves each node to the mean of the tube points around it, across the stem only. */
@@ -170,10 +170,10 @@ static void centre_nodes(const plm_sketch *sketch, plm_stem_path *stem, double r
     const double window = WINDOW * sketch->scale.radius;
     for (size_t i = 0; i < sketch->working.count; i++) {
         if (!sketch->is_tube[i]) continue;
-        double along;
-        if (plm_stem_distance(stem, sketch->working.xyz[i], NULL, &along) > reach) continue;
+        plm_stem_place place;
+        if (plm_stem_nearest(stem, sketch->working.xyz[i], &place) > reach) continue;
         for (size_t n = 0; n < stem->count; n++) {
-            const double w = 1 - fabs(stem->along[n] - along) / window;
+            const double w = 1 - fabs(stem->along[n] - place.along) / window;
             if (w <= 0) continue;
             for (int axis = 0; axis < 3; axis++) sum[n][axis] += w * sketch->working.xyz[i][axis];
             sum[n][3] += w;
@@ -208,12 +208,12 @@ static plm_status measure_radius(const plm_sketch *sketch, plm_stem_path *stem, 
     if (!scratch.failed) {
         size_t near = 0;
         for (size_t i = 0; i < count; i++) {
-            double at = 0;
             if (!sketch->is_tube[i]) continue;
-            const double d = plm_stem_distance(stem, sketch->working.xyz[i], NULL, &at);
+            plm_stem_place place;
+            const double d = plm_stem_nearest(stem, sketch->working.xyz[i], &place);
             if (d > reach) continue;
             distance[near] = (float)d;
-            along[near++] = (float)at;
+            along[near++] = (float)place.along;
         }
         for (size_t n = 0; n < stem->count; n++) {
             size_t members = 0;
@@ -252,8 +252,7 @@ static plm_status refine(const plm_sketch *sketch, plm_stem_path *stem, plm_erro
     if (!buffer) return PLM_E_MEMORY;
     const double reach = REACH * sketch->scale.stem_radius + sketch->scale.noise;
     for (int round = 0; round < CENTRING_ROUNDS; round++) {
-        smooth_nodes(stem, (size_t)(0.75 / STEP), (double(*)[3])buffer);
-        measure_along(stem);
+        plm_stem_smooth(stem, (size_t)(0.75 / STEP), (double(*)[3])buffer);
         centre_nodes(sketch, stem, reach, buffer);
         measure_along(stem);
     }
@@ -261,14 +260,13 @@ static plm_status refine(const plm_sketch *sketch, plm_stem_path *stem, plm_erro
     return measure_radius(sketch, stem, reach, error);
 }
 
-static void mark_stem(plm_sketch *sketch)
+void plm_sketch_mark_stem(plm_sketch *sketch)
 {
     for (size_t i = 0; i < sketch->working.count; i++) {
-        double radius = 0;
-        const double d = plm_stem_distance(&sketch->stem, sketch->working.xyz[i], &radius, NULL);
+        plm_stem_place place;
+        const double d = plm_stem_nearest(&sketch->stem, sketch->working.xyz[i], &place);
         const double margin = sketch->is_tube[i] ? MARGIN : MARGIN_BLADE;
-        sketch->is_stem[i] = d <= margin * radius + sketch->scale.noise;
-        if (sketch->is_stem[i]) sketch->is_tube[i] = true;
+        sketch->is_stem[i] = d <= margin * place.radius + sketch->scale.noise;
     }
 }
 
@@ -302,10 +300,11 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     status = resample(sketch, chain, length, &stem, error);
     if (status == PLM_OK) status = refine(sketch, &stem, error);
     if (status == PLM_OK) status = cut_thin_end(&stem, error);
+    if (status == PLM_OK) status = plm_stem_fit(sketch, &stem, error);
     if (status != PLM_OK) goto done;
     sketch->stem = stem;
     stem = (plm_stem_path){0};
-    mark_stem(sketch);
+    plm_sketch_mark_stem(sketch);
 done:
     plm_free(stem.node);
     plm_free(stem.radius);

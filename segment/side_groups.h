@@ -1,0 +1,36 @@
+/* segment/side_groups.h: what hangs on the trunk at one place is a side group. Internal. */
+#ifndef PLANTIMETER_SEGMENT_SIDE_GROUPS_H
+#define PLANTIMETER_SEGMENT_SIDE_GROUPS_H
+
+#include "segment/sketch.h"
+
+/** One side group. */
+typedef struct plm_side_group {
+    bool has_foot;                  /**< false: it is apart from the trunk */
+    double along;                   /**< of its foot on the stem's line; height where there is no stem */
+    double tube_share;              /**< of its points between the trunk and a little beyond the foot */
+    double tube_radius;             /**< median there; 0 without tube */
+    double tube_length, blade_area; /**< of the whole group; blades too small to be leaves do not count */
+    size_t blades;
+} plm_side_group;
+
+typedef struct plm_side_groups {
+    size_t count;
+    plm_side_group *group;
+    float *distance; /**< of each working point, along the graph, from the trunk */
+    int32_t *blade;  /**< of each working point: its component of blade within its group, -1 for tube and trunk */
+    size_t blade_count;
+    double *blade_area;
+    int32_t *blade_group;
+} plm_side_groups;
+
+/** Finds the side groups and writes sketch->group. The trunk: the stem's points, or (rosettes) the core where the
+ * petioles meet. */
+plm_status plm_side_groups_find(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
+
+void plm_side_groups_free(plm_side_groups *groups);
+
+/** Blades smaller than this are no leaves. */
+double plm_blade_least(const plm_sketch *sketch);
+
+#endif

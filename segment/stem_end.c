@@ -1,0 +1,113 @@
+/* segment/stem_end.c: where the stem ends. The way through thick tubes may run on into the petiole of the topmost leaf:
+ * then the blades at its end seem to sit on the stem without the petioles that the other leaves have. */
+#include "cloud/linear.h"
+#include "segment/side_groups.h"
+#include "segment/stem_fit.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double END_REACH = 2;      /* feet this near to the path's end (in R) are at its end */
+static const double SESSILE = 0.4;      /* of the other leaves' petioles: a shorter tube is none */
+static const double PETIOLES_LEAST = 2; /* median length of the others' tubes in R: else the plant has no petioles */
+static const double BARE_LEAST = 2;     /* a stretch without feet before the end, in R: the petiole */
+static const double STUB = 0.7;         /* a side tube without blade this long (in R) is a foot as well */
+static const double CUT_BEYOND = 0.3; /* the cut is so far (in R) beyond the last foot when nothing tells better, ... */
+static const double CUT_END = 1.25;   /* ... and so far before the path's end, where its direction is not known */
+static const double BEND = 0.35;      /* kinks (radians) and ... */
+static const double DROP = 0.25;      /* ... losses of radius that count as one unit of evidence */
+static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
+
+static double tube_of_blade(const plm_side_group *group)
+{
+    return group->tube_length / (double)group->blades;
+}
+
+/* Median tube length of a blade, of the leafy groups that do not stand at the path's end. */
+static double typical_petiole(const plm_side_groups *groups, double end, float *value)
+{
+    size_t count = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (group->has_foot && group->blades && group->along < end) value[count++] = (float)tube_of_blade(group);
+    }
+    return plm_quantile(value, count, 0.5);
+}
+
+/* Direction of the path over some nodes from n up (or down, with a negative step). */
+static void direction(const plm_stem_path *stem, size_t n, int step, double out[3])
+{
+    size_t m = n;
+    for (int k = 0; k < 6; k++)
+        if ((step > 0 && m + 1 < stem->count) || (step < 0 && m > 0)) m = step > 0 ? m + 1 : m - 1;
+    for (int axis = 0; axis < 3; axis++) out[axis] = step * (stem->node[m][axis] - stem->node[n][axis]);
+    plm_normalise(out);
+}
+
+static double mean_radius(const plm_stem_path *stem, size_t n, int step)
+{
+    double sum = 0;
+    int count = 0;
+    for (size_t m = n; count < 6 && m<stem->count; m = step> 0 ? m + 1 : m - 1) {
+        sum += stem->radius[m];
+        count++;
+        if (step < 0 && m == 0) break;
+    }
+    return sum / count;
+}
+
+/* The node between two arc lengths at which the path turns and thins the most. */
+static size_t best_cut(const plm_stem_path *stem, double from, double to, double fallback)
+{
+    size_t best = 0;
+    double most = EVIDENCE_LEAST;
+    for (size_t n = 3; n + 3 < stem->count; n++) {
+        if (stem->along[n] < from || stem->along[n] > to) continue;
+        double below[3], above[3];
+        direction(stem, n, -1, below);
+        direction(stem, n, 1, above);
+        const double bend = acos(fmax(-1, fmin(1, plm_dot(below, above))));
+        const double drop = 1 - mean_radius(stem, n, 1) / mean_radius(stem, n, -1);
+        const double evidence = bend / BEND + drop / DROP;
+        if (evidence > most) {
+            most = evidence;
+            best = n;
+        }
+    }
+    while (!best || (most == EVIDENCE_LEAST && best + 1 < stem->count && stem->along[best] < fallback)) best++;
+    return best;
+}
+
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
+{
+    plm_stem_path *stem = &sketch->stem;
+    if (!stem->count) return PLM_OK;
+    plm_side_groups groups = {0};
+    plm_status status = plm_side_groups_find(sketch, &groups, error);
+    if (status != PLM_OK) return status;
+    const double R = sketch->scale.radius, end = stem->along[stem->count - 1] - END_REACH * R;
+    float *value = plm_alloc(groups.count + 1, sizeof *value, error);
+    if (!value) status = PLM_E_MEMORY;
+    const double typical = value ? typical_petiole(&groups, end, value) : 0;
+    if (typical >= PETIOLES_LEAST * R) {
+        bool is_sessile = false, has_petiole = false;
+        double last = 0;
+        for (size_t g = 0; g < groups.count; g++) {
+            const plm_side_group *group = &groups.group[g];
+            if (!group->has_foot || (!group->blades && group->tube_length < STUB * R)) continue;
+            const bool sessile = group->blades && tube_of_blade(group) < SESSILE * typical;
+            if (group->along >= end && sessile)
+                is_sessile = true;
+            else
+                last = fmax(last, group->along);
+            has_petiole |= group->along >= end && group->blades && !sessile;
+        }
+        if (is_sessile && !has_petiole && stem->along[stem->count - 1] - last > BARE_LEAST * R) {
+            stem->count = best_cut(stem, last, stem->along[stem->count - 1] - CUT_END * R, last + CUT_BEYOND * R) + 1;
+            plm_sketch_mark_stem(sketch);
+        }
+    }
+    plm_free(value);
+    plm_side_groups_free(&groups);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* segment/stem_fit.h: the line of the main stem: nearest places, smoothing, and its fit to the points. Internal. */
+#ifndef PLANTIMETER_SEGMENT_STEM_FIT_H
+#define PLANTIMETER_SEGMENT_STEM_FIT_H
+
+#include "segment/sketch.h"
+
+/** The place on the stem's line that is nearest to a point. */
+typedef struct plm_stem_place {
+    double along;     /**< arc length from the base */
+    double radius;    /**< of the stem there */
+    double offset[3]; /**< from there to the point */
+} plm_stem_place;
+
+/** Distance of a point from the line (INFINITY and place untouched when the path is empty). */
+double plm_stem_nearest(const plm_stem_path *stem, const float xyz[3], plm_stem_place *place);
+
+/** Box-smooths the nodes over +-reach nodes (fewer near the ends, so that they stay) and measures along anew. buffer:
+ * scratch, stem->count rows. */
+void plm_stem_smooth(plm_stem_path *stem, size_t reach, double (*buffer)[3]);
+
+/** Sharpens the line and the radii by robust circles. radius[] must hold a guess within some 40 %. */
+plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error);
+
+#endif
