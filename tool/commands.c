@@ -8,6 +8,8 @@ static const plm_command *const commands[] = {
     &plm_command_plan,     //
     &plm_command_info,     //
     &plm_command_traits,   //
+    &plm_command_validate, //
+    &plm_command_compare,  //
     &plm_command_simulate, //
     &plm_command_help,
 };
