@@ -1,6 +1,7 @@
 /* tool/agreement_run.c: runs a comparison of two tables and tells what came of it. */
 #include "tool/agreement_run.h"
 
+#include "reports/plots.h"
 #include "reports/validation.h"
 
 #include <errno.h>
@@ -56,6 +57,18 @@ static int try_gates(const plm_validation *v, const char *conditions)
     return exit_code;
 }
 
+static plm_status draw(const plm_validation *v, const char *output, plm_error *error)
+{
+    char folder[4096];
+    if ((size_t)snprintf(folder, sizeof folder, "%s/plots", output) >= sizeof folder)
+        return plm_fail(error, PLM_E_ARGUMENT, "the folder's name is too long");
+    bool drawn = false;
+    const plm_status status = plm_validation_plots(v, folder, &drawn, error);
+    if (status == PLM_OK && !drawn)
+        fprintf(stderr, "plantimeter: gnuplot is not installed; %s holds the scripts and data\n", folder);
+    return status;
+}
+
 int agreement_run(const agreement_settings *settings, const char *estimates, const char *manual)
 {
     const plm_validation_options options = {.match = (plm_match)settings->match,
@@ -77,6 +90,7 @@ int agreement_run(const agreement_settings *settings, const char *estimates, con
     if (mkdir(settings->output, 0777) != 0 && errno != EEXIST)
         status = plm_fail(&error, PLM_E_WRITE, "%s: %s", settings->output, strerror(errno));
     if (status == PLM_OK) status = plm_validation_write(&validation, settings->output, &error);
+    if (status == PLM_OK && settings->plots) status = draw(&validation, settings->output, &error);
     if (status != PLM_OK) {
         exit_code = plm_report_failure(status, &error);
     } else {

@@ -13,7 +13,7 @@ typedef struct agreement_settings {
     double variance_ratio;
     int resamples;
     uint64_t seed;
-    bool quiet, statistics;
+    bool quiet, plots, statistics;
 } agreement_settings;
 
 /** Options that both have. */
@@ -63,6 +63,10 @@ typedef struct agreement_settings {
          .help = "exit with 1 where one holds: 'leaf_area.mape>5,plant_height.r2<0.9'",                                \
          .kind = PLM_OPTION_TEXT,                                                                                      \
          .offset = offsetof(agreement_settings, fail_if)},                                                             \
+        {.name = "plots",                                                                                              \
+         .help = "draw each trait too (gnuplot): DIR/plots/TRAIT.svg and .png, with data and script",                  \
+         .kind = PLM_OPTION_FLAG,                                                                                      \
+         .offset = offsetof(agreement_settings, plots)},                                                               \
     {                                                                                                                  \
         .letter = 'q', .name = "quiet", .help = "print no table", .kind = PLM_OPTION_FLAG,                             \
         .offset = offsetof(agreement_settings, quiet)                                                                  \

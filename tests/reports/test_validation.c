@@ -1,7 +1,7 @@
 /* From two tables to agreement.csv: repeats, units, groups, angle conventions, gates, what stays unpaired. */
 #include "support/test.h"
 
-#include "reports/validation.h"
+#include "reports/plots.h"
 
 static const char traits_csv[] =
     "plant_id,organ,organ_id,x,y,z,trait,value,unit,std_error,n_points,status,reason,method\n"
@@ -130,6 +130,39 @@ static void gates_say_what_failed_and_refuse_what_they_cannot_read(void **unused
     test_remove_folder(folder);
 }
 
+static void plots_keep_their_scripts_and_name_the_points(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    char *folder = test_make_folder();
+    const plm_validation_options options = {0};
+    plm_validation v;
+    assert_ok(plm_validate(write_file(folder, 0, "traits.csv", traits_csv),
+                           write_file(folder, 1, "manual.csv", manual_csv), &options, &v, &error));
+    char plots[4200], path[4300];
+    snprintf(plots, sizeof plots, "%s/plots", folder);
+    bool drawn = false;
+    assert_ok(plm_validation_plots(&v, plots, &drawn, &error));
+    snprintf(path, sizeof path, "%s/plant_height.gp", plots);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    fclose(file);
+    if (drawn) {
+        snprintf(path, sizeof path, "%s/plant_height.svg", plots);
+        static char svg[1 << 20];
+        file = fopen(path, "r");
+        assert_non_null(file);
+        svg[fread(svg, 1, sizeof svg - 1, file)] = 0;
+        fclose(file);
+        assert_non_null(strstr(svg, "b plant"));
+        assert_non_null(strstr(svg, "RMSE"));
+    } else {
+        print_message("skipped: gnuplot is not installed\n");
+    }
+    plm_validation_free(&v);
+    test_remove_folder(folder);
+}
+
 static void tables_that_do_not_fit_are_refused_by_name(void **unused)
 {
     (void)unused;
@@ -161,6 +194,7 @@ int main(void)
         cmocka_unit_test(tables_become_statistics),
         cmocka_unit_test(field_book_exports_are_manual_tables),
         cmocka_unit_test(gates_say_what_failed_and_refuse_what_they_cannot_read),
+        cmocka_unit_test(plots_keep_their_scripts_and_name_the_points),
         cmocka_unit_test(tables_that_do_not_fit_are_refused_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
