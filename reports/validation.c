@@ -93,10 +93,10 @@ static plm_status repeatability_of(const plm_validation *v, const plm_validated_
     if (status == PLM_OK) {
         for (size_t i = 0; i < count; i++) wanted[pair[i].manual - v->manual.reading] = true;
         size_t used = 0;
-        const double factor = plm_unit_conversion(pair[0].manual->unit, pair[0].estimate->unit);
         for (size_t i = 0; i < v->manual.repeat_total; i++)
             if (wanted[v->manual.repeat_reading[i]]) {
-                value[used] = v->manual.repeat_value[i] * factor;
+                const plm_reading *manual = &v->manual.reading[v->manual.repeat_reading[i]];
+                value[used] = v->manual.repeat_value[i] * plm_unit_conversion(manual->unit, pair->estimate->unit);
                 subject[used++] = v->manual.repeat_reading[i];
             }
         status = plm_repeatability_measure(value, subject, used, out, error);
