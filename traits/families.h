@@ -30,6 +30,17 @@ PLM_TRAIT_FUNCTION(plm_trait_leaf_length);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_width);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_azimuth_from_stem);
+/* traits/stem_traits.c */
+PLM_TRAIT_FUNCTION(plm_trait_stem_diameter);
+PLM_TRAIT_FUNCTION(plm_trait_stem_length);
+PLM_TRAIT_FUNCTION(plm_trait_stem_inclination);
+
+/* traits/petiole_traits.c */
+PLM_TRAIT_FUNCTION(plm_trait_petiole_inclination);
+PLM_TRAIT_FUNCTION(plm_trait_petiole_length);
+PLM_TRAIT_FUNCTION(plm_trait_petiole_diameter);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_insertion_angle);
+PLM_TRAIT_FUNCTION(plm_trait_internode_length);
 
 /* traits/plant_height.c */
 PLM_TRAIT_FUNCTION(plm_trait_plant_height);

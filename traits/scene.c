@@ -1,6 +1,8 @@
 /* traits/scene.c: from a cloud with labels to organs with their points side by side, indexed and with known sampling. */
 #include "traits/scene.h"
 
+#include "traits/axis.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -212,6 +214,7 @@ void plm_scene_free(plm_scene *scene)
         plm_free(organ->midrib);
         plm_index_free(organ->index);
         plm_free(organ->leaflet);
+        plm_axis_free(organ->axis);
         plm_free(organ->row);
         plm_free(organ->xyz);
     }

@@ -1,0 +1,214 @@
+/* Axes of stems and petioles: a made-up plant of known angles and lengths, and the labelled development clouds. */
+#include "support/test.h"
+
+#include <jansson.h>
+
+#include "cloud/linear.h"
+#include "io/io.h"
+#include "support/tubes.h"
+#include "traits/traits.h"
+
+enum { STEM = 3000, PETIOLE = 500, PETIOLES = 3, POINTS = STEM + PETIOLE * PETIOLES };
+
+static const double stem_radius = 0.002, stem_length = 0.1, petiole_radius = 0.0008, petiole_length = 0.03;
+static const double node[PETIOLES] = {0.04, 0.04, 0.07}; /* the first two stand opposite */
+static const double inclination[PETIOLES] = {40, 65, 80};
+
+/* A vertical stem and straight petioles that start on its surface. No point lies inside of the stem. */
+static plm_cloud made_plant(double noise)
+{
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(POINTS, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    double(*xyz)[3] = malloc(POINTS * sizeof *xyz);
+    assert_non_null(xyz);
+    uint64_t state = 21;
+    const test_tube stem = {.end = {0, 0, stem_length}, .radius = {stem_radius, stem_radius}, .arc = {0, 2 * PLM_PI}};
+    test_tube_points(&stem, STEM, &state, xyz);
+    for (int p = 0; p < PETIOLES; p++) {
+        const double tilt = plm_radians(inclination[p]), heading = PLM_PI * p + 0.4;
+        const double direction[3] = {sin(tilt) * cos(heading), sin(tilt) * sin(heading), cos(tilt)};
+        test_tube tube = {.radius = {petiole_radius, petiole_radius}, .arc = {0, 2 * PLM_PI}};
+        const double surface[3] = {stem_radius * cos(heading), stem_radius * sin(heading), node[p]};
+        for (int k = 0; k < 3; k++) { /* from inside the stem, so that the cut is oblique */
+            tube.base[k] = surface[k] - 0.003 * direction[k];
+            tube.end[k] = surface[k] + petiole_length * direction[k];
+        }
+        for (size_t i = STEM + PETIOLE * (size_t)p; i < STEM + PETIOLE * (size_t)(p + 1);) {
+            test_tube_points(&tube, 1, &state, xyz + i);
+            i += hypot(xyz[i][0], xyz[i][1]) > stem_radius;
+        }
+    }
+    for (size_t i = 0; i < POINTS; i++) {
+        for (int k = 0; k < 3; k++) cloud.xyz[i][k] = (float)(xyz[i][k] + noise * test_normal(&state));
+        cloud.label[i] = i < STEM ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE;
+        cloud.organ[i] = i < STEM ? 0 : (int32_t)((i - STEM) / PETIOLE);
+    }
+    free(xyz);
+    return cloud;
+}
+
+static plm_measurement measure(plm_cloud *cloud)
+{
+    plm_error error = {0};
+    plm_measure_options options;
+    plm_measure_defaults(&options);
+    options.traits = "stem,petiole";
+    plm_measurement plant;
+    assert_ok(plm_measure(cloud, &options, &plant, &error));
+    return plant;
+}
+
+static const plm_estimate *find(const plm_measurement *plant, const char *trait, int32_t organ)
+{
+    for (size_t i = 0; i < plant->value_count; i++)
+        if (!strcmp(plant->value[i].trait->name, trait) && plant->value[i].organ_id == organ)
+            return &plant->value[i].estimate;
+    fail_msg("no %s of organ %d", trait, organ);
+    return NULL;
+}
+
+static void a_clean_plant_is_measured_to_its_built_angles_and_lengths(void **unused)
+{
+    (void)unused;
+    plm_cloud cloud = made_plant(0);
+    plm_measurement plant = measure(&cloud);
+    assert_near(find(&plant, "stem_length", 0)->value, stem_length, 2e-4);
+    assert_near(find(&plant, "stem_diameter", 0)->value, 2 * stem_radius, 4e-6);
+    assert_near(find(&plant, "stem_inclination", 0)->value, 0, plm_radians(0.05));
+    for (int p = 0; p < PETIOLES; p++) {
+        assert_near(plm_degrees(find(&plant, "petiole_inclination", p)->value), inclination[p], 0.2);
+        assert_near(find(&plant, "petiole_length", p)->value, petiole_length, 3e-4);
+        assert_near(find(&plant, "petiole_diameter", p)->value, 2 * petiole_radius, 5e-6);
+    }
+    assert_int_equal(find(&plant, "internode_length", 0)->state, PLM_STATE_NOT_APPLICABLE);
+    assert_int_equal(find(&plant, "internode_length", 1)->state, PLM_STATE_NOT_APPLICABLE); /* the same node */
+    assert_near(find(&plant, "internode_length", 2)->value, 0.03, 3e-4);
+    plm_measurement_free(&plant);
+}
+
+static void noise_is_covered_by_the_standard_errors(void **unused)
+{
+    (void)unused;
+    plm_cloud cloud = made_plant(3e-4);
+    plm_measurement plant = measure(&cloud);
+    for (size_t i = 0; i < plant.value_count; i++) {
+        const plm_trait_value *value = &plant.value[i];
+        if (value->estimate.state != PLM_STATE_OK) continue;
+        assert_true(value->estimate.std_error > 0);
+        if (!strcmp(value->trait->name, "petiole_inclination")) {
+            const double off = value->estimate.value - plm_radians(inclination[value->organ_id]);
+            assert_true(fabs(off) < 3 * value->estimate.std_error);
+            assert_true(value->estimate.std_error < plm_radians(1.5));
+        }
+    }
+    plm_measurement_free(&plant);
+}
+
+static void the_order_of_rows_does_not_matter(void **unused)
+{
+    (void)unused;
+    plm_cloud one = made_plant(2e-4), other = made_plant(2e-4);
+    for (size_t i = 0; i < POINTS; i++) /* the same points, backwards */
+        for (int k = 0; k < 3; k++) other.xyz[i][k] = one.xyz[POINTS - 1 - i][k];
+    for (size_t i = 0; i < POINTS; i++) {
+        other.label[i] = one.label[POINTS - 1 - i];
+        other.organ[i] = one.organ[POINTS - 1 - i];
+    }
+    plm_measurement a = measure(&one), b = measure(&other);
+    assert_int_equal(a.value_count, b.value_count);
+    for (size_t i = 0; i < a.value_count; i++) {
+        assert_int_equal(a.value[i].estimate.state, b.value[i].estimate.state);
+        if (a.value[i].estimate.state != PLM_STATE_OK) continue;
+        const double value = a.value[i].estimate.value;
+        assert_near(b.value[i].estimate.value, value, 1e-6 * fabs(value) + 1e-12);
+    }
+    plm_measurement_free(&a);
+    plm_measurement_free(&b);
+}
+
+/* ---- The development clouds ------------------------------------------------------------------------------------ */
+
+typedef struct tally {
+    double squares;
+    int count, covered;
+} tally;
+
+static void add(tally *sum, const plm_estimate *estimate, double truth, double factor)
+{
+    if (estimate->state != PLM_STATE_OK) return;
+    const double off = estimate->value * factor - truth;
+    sum->squares += off * off;
+    sum->covered += fabs(off) < 1.96 * factor * estimate->std_error;
+    sum->count++;
+}
+
+/* Adds a labelled cloud's errors: stems' diameters (mm) and inclinations (degrees) of petioles from 12 mm up. */
+static void add_case(const char *folder, const char *name, tally *diameter, tally *angle)
+{
+    plm_error error = {0};
+    char path[4200];
+    snprintf(path, sizeof path, "%s/dev/%s.labelled.ply", folder, name);
+    const plm_read_options options = {.label_field = "label"};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_read(path, &options, &cloud, NULL, &error));
+    plm_measurement plant = measure(&cloud);
+    snprintf(path, sizeof path, "%s/dev/%s.truth.json", folder, name);
+    json_t *truth = json_load_file(path, 0, NULL), *organ;
+    assert_non_null(truth);
+    size_t i;
+    json_array_foreach(json_object_get(truth, "organs"), i, organ)
+    {
+        const char *kind = json_string_value(json_object_get(organ, "organ"));
+        const int32_t id = (int32_t)json_integer_value(json_object_get(organ, "organ_id"));
+        if (!strcmp(kind, "stem"))
+            add(diameter, find(&plant, "stem_diameter", id),
+                1e3 * json_number_value(json_object_get(organ, "stem_diameter")), 1e3);
+        if (!strcmp(kind, "petiole") && json_number_value(json_object_get(organ, "petiole_length")) > 0.012)
+            add(angle, find(&plant, "petiole_inclination", id),
+                json_number_value(json_object_get(organ, "petiole_inclination")), plm_degrees(1));
+    }
+    json_decref(truth);
+    plm_measurement_free(&plant);
+}
+
+static void labelled_clouds_give_the_true_diameters_and_angles(void **unused)
+{
+    (void)unused;
+    const char *folder = test_data_folder();
+    if (!folder) skip();
+    static const struct {
+        const char *name[3];
+        double diameter, angle; /* largest RMSE, mm and degrees */
+    } kinds[] = {
+        {{"eggplant_11_clean", "pepper_12_clean", "okra_13_clean"}, 0.02, 0.6},
+        {{"eggplant_11_rgbd", "cucumber_23_rgbd", "pepper_22_rgbd_pot"}, 0.2, 1.6},
+        {{"eggplant_11_3dgs", "okra_32_3dgs", "cucumber_34_splat"}, 0.12, 1.3},
+    };
+    tally all = {0};
+    for (size_t k = 0; k < COUNT(kinds); k++) {
+        tally diameter = {0}, angle = {0};
+        for (size_t i = 0; i < COUNT(kinds[k].name); i++) add_case(folder, kinds[k].name[i], &diameter, &angle);
+        const double diameter_rmse = sqrt(diameter.squares / diameter.count), rmse = sqrt(angle.squares / angle.count);
+        print_message("%s and two more: stem diameter RMSE %.3f mm (%d, %d covered), petiole inclination RMSE %.2f "
+                      "degrees (%d, %d covered)\n",
+                      kinds[k].name[0], diameter_rmse, diameter.count, diameter.covered, rmse, angle.count,
+                      angle.covered);
+        assert_true(diameter_rmse < kinds[k].diameter);
+        assert_true(rmse < kinds[k].angle);
+        all.count += angle.count;
+        all.covered += angle.covered;
+    }
+    assert_true(all.covered >= 0.88 * all.count);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
+        cmocka_unit_test(noise_is_covered_by_the_standard_errors),
+        cmocka_unit_test(the_order_of_rows_does_not_matter),
+        cmocka_unit_test(labelled_clouds_give_the_true_diameters_and_angles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

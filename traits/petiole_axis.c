@@ -1,0 +1,414 @@
+/* traits/petiole_axis.c: a petiole's centre line from the stem's surface to the (last) blade junction.
+ *
+ * The ends decide: half a millimetre at one end of 20 mm is 1.4 degrees. The stem cuts the petiole obliquely, so
+ * centroids near it are pulled outwards; those points are left out of the fit, and the line is extended straight to the
+ * surface of the stem. */
+#include "cloud/linear.h"
+#include "cloud/order.h"
+#include "traits/axis.h"
+#include "traits/blurred_end.h"
+#include "traits/centre_line.h"
+#include "traits/tube_fit.h"
+
+#include <string.h>
+
+enum { FEWEST_POINTS = 12, MOST_POINTS = 4000, FEWEST_TUBE_POINTS = 30, MOST_SPANS = 4, BISECTIONS = 50, RING = 16 };
+
+static const double end_share = 0.02; /* points that stand for an end at the start */
+static const double radii_per_span = 60;
+static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
+static const double noise_along = 0.7;       /* share of the noise that lies along the tube */
+static const double least_ring = 0.45;       /* share of a ring that must be outside of the stem */
+static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */
+
+typedef struct petiole {
+    const plm_organ *organ;
+    plm_tube_points points;
+    const plm_organ *stem;      /* NULL where there is none */
+    const plm_organ *leaf;      /* NULL where there is none */
+    double *distance, *scratch; /* as many as points */
+    plm_centre_line line;
+    plm_tube tube;
+    bool has_tube;
+    double radius, noise;
+    double start; /* parameter of line before which points are left out */
+} petiole;
+
+/* ---- The stem at the node -------------------------------------------------------------------------------------- */
+
+/* Distance of a point from the stem's surface (negative inside), and the parameter of its foot on the stem's line. */
+static double off_stem(const plm_axis *stem, const double point[3], double *foot)
+{
+    const double low = fmin(stem->begin, stem->end), high = fmax(stem->begin, stem->end);
+    *foot = fmin(fmax(plm_curve_foot(&stem->line, point), low), high);
+    double at[3], gap[3];
+    plm_curve_point(&stem->line, *foot, at);
+    for (int k = 0; k < 3; k++) gap[k] = point[k] - at[k];
+    return plm_norm(gap) - plm_axis_radius(stem, *foot);
+}
+
+/* The stem that the petiole's points come nearest to: by the 2 % quantile of their distances. */
+static void find_stem(const plm_scene *scene, petiole *p)
+{
+    double nearest = INFINITY;
+    for (size_t s = 0; s < scene->organ_count; s++) {
+        const plm_organ *organ = &scene->organ[s];
+        if (organ->label != PLM_LABEL_STEM || !organ->axis) continue;
+        double foot;
+        for (size_t i = 0; i < p->points.count; i++) p->scratch[i] = off_stem(organ->axis, p->points.xyz[i], &foot);
+        const double distance = plm_order_quantile(p->scratch, p->points.count, end_share);
+        if (distance < nearest) {
+            nearest = distance;
+            p->stem = organ;
+        }
+    }
+}
+
+/* ---- First ends ------------------------------------------------------------------------------------------------- */
+
+/* Mean of the points with the smallest keys (end_share of them, at least 3). keys are kept. */
+static void mean_of_nearest(const petiole *p, const double *keys, double mean[3])
+{
+    const size_t count = p->points.count;
+    size_t wanted = (size_t)ceil(end_share * (double)count);
+    if (wanted < 3) wanted = 3;
+    memcpy(p->scratch, keys, count * sizeof *keys);
+    const double limit = plm_order_select(p->scratch, count, wanted - 1);
+    size_t taken = 0;
+    memset(mean, 0, 3 * sizeof *mean);
+    for (size_t i = 0; i < count; i++)
+        if (keys[i] <= limit) {
+            for (int k = 0; k < 3; k++) mean[k] += p->points.xyz[i][k];
+            taken++;
+        }
+    for (int k = 0; k < 3; k++) mean[k] /= (double)taken;
+}
+
+static double gap_between(const double a[3], const double b[3])
+{
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return plm_norm(d);
+}
+
+/* Ends without a stem: of the two ends of the largest extent, the one farther from the petiole's leaf is the base;
+ * without a leaf, the lower one. */
+static void ends_without_stem(petiole *p, double base[3], double far[3])
+{
+    double one[3], other[3];
+    const size_t count = p->points.count;
+    for (size_t i = 0; i < count; i++) p->distance[i] = -gap_between(p->points.xyz[i], p->organ->centroid);
+    mean_of_nearest(p, p->distance, one);
+    for (size_t i = 0; i < count; i++) p->distance[i] = -gap_between(p->points.xyz[i], one);
+    mean_of_nearest(p, p->distance, other);
+    const bool one_is_base =
+        p->leaf ? gap_between(one, p->leaf->centroid) > gap_between(other, p->leaf->centroid) : one[2] < other[2];
+    memcpy(base, one_is_base ? one : other, 3 * sizeof *base);
+    memcpy(far, one_is_base ? other : one, 3 * sizeof *far);
+}
+
+static void first_ends(petiole *p, double base[3], double far[3])
+{
+    if (!p->stem) {
+        ends_without_stem(p, base, far);
+        return;
+    }
+    double foot;
+    for (size_t i = 0; i < p->points.count; i++) p->distance[i] = off_stem(p->stem->axis, p->points.xyz[i], &foot);
+    mean_of_nearest(p, p->distance, base);
+    for (size_t i = 0; i < p->points.count; i++) p->distance[i] = -gap_between(p->points.xyz[i], base);
+    mean_of_nearest(p, p->distance, far);
+}
+
+/* ---- The line --------------------------------------------------------------------------------------------------- */
+
+static plm_status fit_line(const plm_tube_points *points, const double base[3], const double far[3], double radius,
+                           plm_centre_line *line, plm_error *error)
+{
+    const double length = gap_between(base, far);
+    const int spans = (int)fmin(fmax(length / (radii_per_span * radius), 1), MOST_SPANS);
+    return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, base, far, 3, spans, line, error);
+}
+
+/* Radius and noise from a tube about the line; where none fits, from the distances to the line: in noise and where one
+ * side is seen they lie between 0.6 and 1.1 radii. */
+static plm_status fit_tube(petiole *p, plm_error *error)
+{
+    p->radius = p->line.distance;
+    p->noise = 0.5 * p->line.distance;
+    p->has_tube = false;
+    if (p->points.count < FEWEST_TUBE_POINTS) return PLM_OK;
+    const plm_status status =
+        plm_tube_fit((const double(*)[3])p->points.xyz, p->points.count, &p->line.curve, true, &p->tube, error);
+    if (status == PLM_E_MEMORY) return status;
+    if (status != PLM_OK || !(fabs(p->tube.radius[1]) < p->tube.radius[0]) ||
+        !(p->tube.radius[0] < 2 * p->line.distance))
+        return PLM_OK;
+    p->has_tube = true;
+    p->radius = p->tube.radius[0];
+    p->noise = p->tube.robust_sd;
+    return PLM_OK;
+}
+
+static const plm_curve *line_of(const petiole *p)
+{
+    return p->has_tube && p->tube.robust_sd < sharp * p->tube.radius[0] && p->tube.coverage >= seen ? &p->tube.axis
+                                                                                                    : &p->line.curve;
+}
+
+/* Radius of the petiole at t: they widen towards the stem. */
+static double radius_at(const petiole *p, double t)
+{
+    const double radius = p->has_tube ? p->tube.radius[0] + p->tube.radius[1] * fmin(fmax(t, -1), 1) : p->radius;
+    return fmax(radius, 0.3 * p->radius);
+}
+
+/* Angle between the petiole's line at t and the stem's axis at its foot, folded to [0, pi/2]. */
+static double angle_to_stem(const petiole *p, const plm_curve *line, double t)
+{
+    double point[3], tangent[3], stem[3], foot;
+    plm_curve_point(line, t, point);
+    plm_curve_tangent(line, t, tangent);
+    off_stem(p->stem->axis, point, &foot);
+    plm_curve_tangent(&p->stem->axis->line, foot, stem);
+    return acos(fmin(fabs(plm_dot(tangent, stem)), 1));
+}
+
+/* Parameter at which the line, followed inwards from t, first comes within clearance of the stem's surface: found in
+ * steps, as a line that misses the stem's middle leaves it again. Gives low where it never comes that near before low. */
+static double approach(const petiole *p, const plm_curve *line, double clearance, double t, double low)
+{
+    const double step = 0.25 * p->stem->axis->radius / line->half;
+    double point[3], foot, outer = t;
+    for (;; outer -= step) {
+        if (outer <= low) return low;
+        plm_curve_point(line, outer, point);
+        if (off_stem(p->stem->axis, point, &foot) <= clearance) break;
+    }
+    if (outer == t) return t;
+    double inner = outer;
+    outer += step;
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double middle = 0.5 * (inner + outer);
+        plm_curve_point(line, middle, point);
+        if (off_stem(p->stem->axis, point, &foot) > clearance)
+            outer = middle;
+        else
+            inner = middle;
+    }
+    return 0.5 * (inner + outer);
+}
+
+/* Where the stem cuts the tube obliquely only a part of its ring is left: the share of the ring about the line at t that
+ * lies outside of the stem, and the mean of that part, from the line. */
+static double ring_left(const petiole *p, const plm_curve *line, double t, double mean[3])
+{
+    double centre[3], tangent[3], across[2][3], foot;
+    const double radius = radius_at(p, t);
+    plm_curve_point(line, t, centre);
+    memset(mean, 0, 3 * sizeof *mean);
+    if (off_stem(p->stem->axis, centre, &foot) > radius) return 1;
+    plm_curve_tangent(line, t, tangent);
+    plm_frame_of_axis(tangent, across[0], across[1]);
+    int left = 0;
+    for (int i = 0; i < RING; i++) {
+        const double angle = 2 * PLM_PI * i / RING;
+        double arm[3], point[3];
+        for (int k = 0; k < 3; k++) {
+            arm[k] = radius * (cos(angle) * across[0][k] + sin(angle) * across[1][k]);
+            point[k] = centre[k] + arm[k];
+        }
+        if (off_stem(p->stem->axis, point, &foot) <= 0) continue;
+        left++;
+        for (int k = 0; k < 3; k++) mean[k] += arm[k];
+    }
+    for (int k = 0; k < 3 && left; k++) mean[k] /= left;
+    return (double)left / RING;
+}
+
+/* Takes off the bias that the oblique cut with the stem gives the centroids, leaves out the points where most of the ring
+ * is gone, and fits again. */
+static plm_status refit_free_part(petiole *p, plm_error *error)
+{
+    plm_tube_points kept = {.count = 0, .xyz = plm_alloc(p->points.count, sizeof *kept.xyz, error)};
+    if (!kept.xyz) return PLM_E_MEMORY;
+    plm_status status = PLM_OK;
+    for (int round = 0; round < 2 && status == PLM_OK; round++) {
+        const plm_curve line = p->line.curve;
+        double begin[3], far[3], low = 1;
+        kept.count = 0;
+        for (size_t i = 0; i < p->points.count; i++) {
+            double mean[3];
+            const double t = plm_curve_foot(&line, p->points.xyz[i]);
+            if (ring_left(p, &line, t, mean) < least_ring) continue;
+            for (int k = 0; k < 3; k++) kept.xyz[kept.count][k] = p->points.xyz[i][k] - mean[k];
+            kept.count++;
+            low = fmin(low, t);
+        }
+        if (kept.count < FEWEST_POINTS || low > 0) break; /* too short to lose anything */
+        plm_curve_point(&line, fmax(low, -1), begin);
+        plm_curve_point(&line, 1, far);
+        plm_centre_line again;
+        status = fit_line(&kept, begin, far, p->radius, &again, error);
+        if (status == PLM_OK) p->line = again;
+        if (status == PLM_E_DEGENERATE) { /* the line before stands */
+            status = PLM_OK;
+            break;
+        }
+    }
+    plm_free(kept.xyz);
+    return status;
+}
+
+/* ---- Ends ------------------------------------------------------------------------------------------------------- */
+
+/* Lengths along the line, from its middle, of the points that belong to it. */
+static size_t positions(const petiole *p, const plm_curve *line, double *position)
+{
+    const double reach =
+        p->has_tube ? 1.5 * (p->radius + fabs(p->tube.radius[1])) + 3 * p->noise : 2.5 * p->line.distance;
+    size_t count = 0;
+    for (size_t i = 0; i < p->points.count; i++) {
+        const double t = plm_curve_foot(line, p->points.xyz[i]);
+        double at[3];
+        plm_curve_point(line, t, at);
+        if (gap_between(at, p->points.xyz[i]) <= reach) position[count++] = plm_curve_length(line, 0, t);
+    }
+    return count;
+}
+
+/* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
+ * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
+ * 1 / sin(angle) of any error of the stem's radius. Without stem: the first points. */
+static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
+{
+    if (!p->stem) return first;
+    const plm_axis *stem = p->stem->axis;
+    const double t = plm_curve_walk(line, 0, first.position);
+    const double angle = fmax(angle_to_stem(p, line, t), 0.15);
+    const double half_cut = radius_at(p, t) / tan(fmax(angle, 0.35)); /* petioles bend away soon */
+    const double crossing_error = (0.1 * stem->radius + 0.3 * (p->noise + stem->noise)) / sin(angle);
+    const double first_error = 0.4 * half_cut + 0.2 * p->radius + 0.5 * p->noise + first.std_error;
+    const double high = plm_curve_walk(line, t, 2 * half_cut + 3 * (crossing_error + first_error));
+    const double low = plm_curve_walk(line, t, -3 * (crossing_error + first_error));
+    const double crossing = plm_curve_length(line, 0, approach(p, line, 0, high, low));
+    const double crossing_weight = 1 / (crossing_error * crossing_error),
+                 first_weight = 1 / (first_error * first_error);
+    const double sum = crossing_weight + first_weight;
+    const double behind = first.position + half_cut;
+    return (plm_end){(crossing_weight * crossing + first_weight * behind) / sum,
+                     fmax(1 / sqrt(sum), 0.5 * fabs(crossing - behind))};
+}
+
+static void direction_between(const plm_curve *line, double begin, double end, double direction[3])
+{
+    double from[3];
+    plm_curve_point(line, begin, from);
+    plm_curve_point(line, end, direction);
+    for (int k = 0; k < 3; k++) direction[k] -= from[k];
+    plm_normalise(direction);
+}
+
+/* Change of the chord's direction when its ends are off by their standard errors along the line. */
+static double end_error(const plm_curve *line, double begin, double end, double begin_error, double end_error)
+{
+    double direction[3], moved[3], cross[3], squares = 0;
+    direction_between(line, begin, end, direction);
+    for (int move = 0; move < 4; move++) { /* either end, to both sides */
+        const double by = (move % 2 ? 1 : -1) * (move < 2 ? begin_error : end_error) / line->half;
+        direction_between(line, begin + (move < 2 ? by : 0), end + (move < 2 ? 0 : by), moved);
+        plm_cross(direction, moved, cross);
+        squares += 0.5 * plm_dot(cross, cross);
+    }
+    return sqrt(squares);
+}
+
+static void finish_node(const petiole *p, double base_error, plm_axis *axis)
+{
+    axis->carrier = -1;
+    axis->node = axis->node_error = axis->insertion = axis->insertion_error = NAN;
+    if (!p->stem) return;
+    const plm_axis *stem = p->stem->axis;
+    double foot, tangent[3], cross[3];
+    off_stem(stem, axis->base, &foot);
+    plm_curve_tangent(&stem->line, foot, tangent);
+    if (stem->end < stem->begin)
+        for (int k = 0; k < 3; k++) tangent[k] = -tangent[k];
+    plm_cross(tangent, axis->direction, cross);
+    axis->carrier = p->stem->id;
+    axis->node = fabs(plm_curve_length(&stem->line, stem->begin, foot));
+    axis->node_error = base_error;
+    axis->insertion = atan2(plm_norm(cross), plm_dot(tangent, axis->direction));
+    axis->insertion_error = hypot(axis->direction_error, stem->direction_error + 0.5 * model_error);
+}
+
+static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
+{
+    const plm_curve *line = line_of(p);
+    double *position = p->distance;
+    const size_t count = positions(p, line, position);
+    if (count < FEWEST_POINTS)
+        return plm_fail(error, PLM_E_DEGENERATE, "only %zu of %zu points lie along one line", count, p->points.count);
+    const plm_end far = plm_blurred_end(position, count, noise_along * p->noise);
+    for (size_t i = 0; i < count; i++) position[i] = -position[i];
+    plm_end first = plm_blurred_end(position, count, noise_along * p->noise);
+    first.position = -first.position;
+    const plm_end base = find_base(p, line, first);
+    if (!(far.position > base.position))
+        return plm_fail(error, PLM_E_DEGENERATE, "the petiole has no length outside of the stem");
+    *axis = (plm_axis){.line = *line,
+                       .begin = plm_curve_walk(line, 0, base.position),
+                       .end = plm_curve_walk(line, 0, far.position),
+                       .length = far.position - base.position,
+                       .length_error = hypot(base.std_error, far.std_error),
+                       .radius = p->radius,
+                       .radius_error = INFINITY,
+                       .noise = p->noise,
+                       .point_count = count,
+                       .method = line == &p->line.curve ? "centre line" : "tube fit"};
+    plm_curve_point(line, axis->begin, axis->base);
+    plm_curve_point(line, axis->end, axis->tip);
+    direction_between(line, axis->begin, axis->end, axis->direction);
+    const double fit_error = line == &p->tube.axis ? plm_tube_direction_error(&p->tube, axis->begin, axis->end)
+                                                   : plm_centre_line_direction_error(&p->line, axis->begin, axis->end);
+    const double shift_error =
+        end_error(line, axis->begin, axis->end, base.std_error, hypot(far.std_error, 0.3 * p->radius));
+    axis->direction_error = sqrt(1.44 * fit_error * fit_error + shift_error * shift_error + model_error * model_error);
+    if (p->has_tube) plm_tube_radius(&p->tube, 0, &axis->radius_error);
+    finish_node(p, base.std_error, axis);
+    return PLM_OK;
+}
+
+static plm_status fit(const plm_scene *scene, petiole *p, plm_axis *axis, plm_error *error)
+{
+    double base[3], far[3];
+    find_stem(scene, p);
+    first_ends(p, base, far);
+    plm_status status =
+        plm_centre_line_fit((const double(*)[3])p->points.xyz, p->points.count, base, far, 1, 1, &p->line, error);
+    if (status == PLM_OK) status = fit_line(&p->points, base, far, p->line.distance, &p->line, error);
+    if (status == PLM_OK) status = fit_tube(p, error);
+    if (status == PLM_OK && p->stem) status = refit_free_part(p, error);
+    if (status == PLM_OK) status = finish(p, axis, error);
+    return status;
+}
+
+plm_status plm_petiole_axis_fit(const plm_scene *scene, const plm_organ *organ, plm_axis *axis, plm_error *error)
+{
+    if (organ->count < FEWEST_POINTS)
+        return plm_fail(error, PLM_E_DEGENERATE, "the petiole has %zu points; %d are needed", organ->count,
+                        FEWEST_POINTS);
+    petiole p = {.organ = organ, .leaf = plm_scene_organ(scene, PLM_LABEL_LEAF, organ->id)};
+    plm_status status = plm_tube_points_gather(organ, MOST_POINTS, &p.points, error);
+    if (status != PLM_OK) return status;
+    p.distance = plm_alloc(2 * p.points.count, sizeof *p.distance, error);
+    status = p.distance ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) {
+        p.scratch = p.distance + p.points.count;
+        plm_axis out;
+        status = fit(scene, &p, &out, error);
+        if (status == PLM_OK) *axis = out;
+    }
+    plm_free(p.distance);
+    plm_free(p.points.xyz);
+    return status;
+}

@@ -1,0 +1,105 @@
+/* traits/tube_diameter.c: diameter by a robust tube fit to all points of a window at once, which beats circles slice by
+ * slice (0.003 / 0.21 / 0.04 mm against 0.05 / 0.38 / 0.26 mm on stems of 2 to 4 mm, clean / fused / splat, before any
+ * correction), and the correction for noise. */
+#include "traits/tube_diameter.h"
+
+#include "cloud/linear.h"
+#include "traits/tube_fit.h"
+
+#include <string.h>
+
+enum { MOST_POINTS = 6000, FEWEST_POINTS = 16 };
+
+/* Noise adds 4 c q^2 / d to the diameter d, q the SD of the residuals. Noise along the normal adds nothing (c = 0),
+ * isotropic noise c = 0.5; the values are fits to simulated scans (the estimators' study, section 6). */
+static const double inflation_plain = 0.1, inflation_plain_error = 0.10;
+static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflation_fused_most = 1.6;
+/* Residuals over the radius from which fused inflation and its uncertainty grow. */
+static const double thick_noise = 0.3, very_thick_noise = 0.45;
+static const double model_error = 0.0015;   /* facets, roundness: share of the diameter */
+static const double fit_error_factor = 1.3; /* residuals of neighbouring points are alike */
+static const double unresolved = 4;         /* diameter over spread below which the ring is no longer resolved */
+
+void plm_tube_deflate(double fit, double fit_error, double spread, bool fused, double *diameter, double *std_error)
+{
+    const double thickness = 2 * spread / fit;
+    const double inflation =
+        fused ? fmin(inflation_fused + 3 * fmax(0, thickness - thick_noise), inflation_fused_most) : inflation_plain;
+    const double inflation_error =
+        fused ? inflation_fused_error + fmax(0, thickness - very_thick_noise) : inflation_plain_error;
+    const double d = fmax(fit - 4 * inflation * spread * spread / fit, 0.3 * fit);
+    const double noise_error = 4 * inflation_error * spread * spread / d;
+    *diameter = d;
+    *std_error = sqrt(pow(fit_error_factor * fit_error, 2) + noise_error * noise_error + pow(model_error * d, 2));
+}
+
+/* The organ's points within reach of t along the line, and not far off it. */
+static plm_status window(const plm_organ *organ, double t, double reach, plm_tube_points *points, plm_error *error)
+{
+    const plm_axis *axis = organ->axis;
+    plm_status status = plm_tube_points_gather(organ, SIZE_MAX, points, error);
+    if (status != PLM_OK) return status;
+    const double limit = 2.5 * plm_axis_radius(axis, t) + 3 * axis->noise;
+    const double low = plm_curve_walk(&axis->line, t, -reach), high = plm_curve_walk(&axis->line, t, reach);
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        const double foot = plm_curve_foot(&axis->line, points->xyz[i]);
+        double at[3], gap[3];
+        plm_curve_point(&axis->line, foot, at);
+        for (int k = 0; k < 3; k++) gap[k] = points->xyz[i][k] - at[k];
+        if (foot < low || foot > high || plm_norm(gap) > limit) continue;
+        memmove(points->xyz[kept++], points->xyz[i], sizeof *points->xyz);
+    }
+    const size_t step = kept > MOST_POINTS ? (kept + MOST_POINTS - 1) / MOST_POINTS : 1;
+    points->count = 0;
+    for (size_t i = 0; i < kept; i += step) memmove(points->xyz[points->count++], points->xyz[i], sizeof *points->xyz);
+    return PLM_OK;
+}
+
+static plm_status fit_window(const plm_axis *axis, double t, double reach, const plm_tube_points *points,
+                             plm_tube *tube, plm_error *error)
+{
+    double ends[2][3];
+    plm_curve_point(&axis->line, plm_curve_walk(&axis->line, t, -reach), ends[0]);
+    plm_curve_point(&axis->line, plm_curve_walk(&axis->line, t, reach), ends[1]);
+    plm_curve start;
+    if (!plm_curve_line(ends[0], ends[1], 2, 1, &start))
+        return plm_fail(error, PLM_E_DEGENERATE, "the window around the place of measurement has no length");
+    return plm_tube_fit((const double(*)[3])points->xyz, points->count, &start, true, tube, error);
+}
+
+plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, double t, double reach, plm_estimate *out,
+                             plm_error *error)
+{
+    plm_tube_points points;
+    plm_status status = window(organ, t, reach, &points, error);
+    if (status != PLM_OK) return status;
+    const size_t count = points.count;
+    plm_tube tube;
+    plm_error why = {0};
+    status = count < FEWEST_POINTS ? PLM_E_DEGENERATE : fit_window(organ->axis, t, reach, &points, &tube, &why);
+    plm_free(points.xyz);
+    if (status == PLM_E_MEMORY) return plm_fail(error, status, "%s", why.message);
+    if (status != PLM_OK)
+        return plm_trait_failed(out,
+                                "%zu points within %.1f mm of the place of measurement determine no tube; "
+                                "a denser scan there is needed",
+                                count, 1e3 * reach);
+    double place[3], fit_error;
+    plm_curve_point(&organ->axis->line, t, place);
+    const double fit = 2 * plm_tube_radius(&tube, plm_curve_foot(&tube.axis, place), &fit_error);
+    if (!(fit > 0) || !(fit_error < 0.25 * fit))
+        return plm_trait_failed(out,
+                                "the points around the place of measurement leave the radius undetermined "
+                                "(seen from %.0f %% of the directions)",
+                                100 * tube.coverage);
+    plm_tube_deflate(fit, 2 * fit_error, tube.spread, scene->sampling.fused, &out->value, &out->std_error);
+    if (out->value < unresolved * tube.spread) out->flags |= PLM_FLAG_LOW_DENSITY;
+    if (tube.coverage < 0.6) {
+        out->flags |= PLM_FLAG_OCCLUDED;
+        out->std_error = hypot(out->std_error, 0.1 * out->value * (1 - tube.coverage));
+    }
+    out->point_count = tube.inlier_count;
+    out->method = "tube fit";
+    return PLM_OK;
+}

@@ -1,0 +1,388 @@
+/* traits/tube_fit.c: the robust tube fit. Distances to a curved axis and their derivatives follow from the foot point:
+ * as the gap between point and foot is at right angles to the curve, moving the foot changes the distance in second
+ * order only, so d(distance)/d(coefficient) = -normal . d(axis)/d(coefficient) at the foot; the radius, linear in t,
+ * adds the movement of the foot. */
+#include "traits/tube_fit.h"
+
+#include "cloud/linear.h"
+#include "cloud/order.h"
+
+#include <string.h>
+
+enum { ROUNDS = 5, FIRST_TRIMMED = 2, STEPS = 40 };
+
+static const double loss_scale = 1.5; /* f over the robust SD: soft-L1 then is 95 % efficient in normal noise */
+static const double inlying = 3.0;    /* robust SDs within which a point is of the tube */
+/* Robust SDs beyond which points are left out of the last rounds: soft-L1 alone lets one-sided outliers (the stub of a
+ * petiole, ghosts behind an edge) pull for ever. */
+static const double trimmed = 4.0;
+static const double misfit = 0.15; /* share of the radius that a real stem may be off its tube: never left out */
+static const double settled = 1e-4,
+                    converged = 1e-9;      /* last step over the radius: between rescalings, and at the end */
+static const double smallest_scale = 1e-7; /* f over the radius: below it residuals are rounding of float coordinates */
+
+typedef struct problem {
+    const double (*xyz)[3];
+    size_t count;
+    plm_curve axis; /* frame and form; offsets are those of the last evaluation */
+    int basis;      /* coefficients of u, and of v */
+    int size;       /* parameters */
+    double *foot;   /* t of each point */
+    double *residual, *scratch;
+    double limit; /* residuals beyond count as a constant cost: the point is left out */
+} problem;
+
+typedef struct fit {
+    double x[PLM_TUBE_PARAMETERS];
+    double cost, scale;
+    int steps;
+    bool converged;
+} fit;
+
+static void set_axis(problem *p, const double x[])
+{
+    for (int c = 0; c < 2; c++) memcpy(p->axis.offset[c], x + c * p->basis, (size_t)p->basis * sizeof *x);
+}
+
+/* Foot of a point on the axis, from a near guess. */
+static double refine_foot(const plm_curve *axis, const double point[3], double t, double at[3], double first[3],
+                          double second[3], double gap[3])
+{
+    for (int step = 0;; step++) {
+        plm_curve_derivatives(axis, t, at, first, second);
+        for (int i = 0; i < 3; i++) gap[i] = point[i] - at[i];
+        const double speed = plm_dot(first, first), newton = speed - plm_dot(gap, second);
+        const double change = plm_dot(gap, first) / (newton > 0.2 * speed ? newton : speed);
+        if (step == 8 || fabs(change) < 1e-10) return t;
+        t += fmin(fmax(change, -0.5), 0.5);
+    }
+}
+
+static double radius_at(const problem *p, const double x[], double t)
+{
+    return x[2 * p->basis] + (p->size > 2 * p->basis + 1 ? x[2 * p->basis + 1] * t : 0);
+}
+
+/* Residuals at x; feet are moved along. */
+static void evaluate(problem *p, const double x[])
+{
+    set_axis(p, x);
+    for (size_t i = 0; i < p->count; i++) {
+        double at[3], first[3], second[3], gap[3];
+        p->foot[i] = refine_foot(&p->axis, p->xyz[i], p->foot[i], at, first, second, gap);
+        p->residual[i] = plm_norm(gap) - radius_at(p, x, p->foot[i]);
+    }
+}
+
+/* Derivatives of point i's residual by the parameters, at the axis and feet of the last evaluation. Gives how many
+ * there are; column[] are their numbers. */
+static int derivatives(const problem *p, const double x[], size_t i, int column[], double value[])
+{
+    const double t = p->foot[i];
+    double n0[4], n1[4], at[3], first[3], second[3], gap[3];
+    plm_curve_derivatives(&p->axis, t, at, first, second);
+    const int begin = plm_curve_basis(&p->axis, t, n0, n1, NULL);
+    for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
+    const double speed = plm_dot(first, first), newton = speed - plm_dot(gap, second);
+    const double bend = newton > 0.2 * speed ? newton : speed;
+    const double slope = p->size > 2 * p->basis + 1 ? x[2 * p->basis + 1] : 0;
+    const double distance = plm_norm(gap);
+    int used = 0;
+    for (int c = 0; c < 2; c++) {
+        const double toward = plm_dot(gap, p->axis.across[c]);
+        const double along = plm_dot(first, p->axis.across[c]);
+        for (int k = 0; k <= p->axis.degree; k++) {
+            const double moved = (toward * n1[k] - along * n0[k]) / bend; /* d(foot) / d(coefficient) */
+            column[used] = c * p->basis + begin + k;
+            value[used++] = -(distance > 0 ? toward / distance : 0) * n0[k] - slope * moved;
+        }
+    }
+    column[used] = 2 * p->basis;
+    value[used++] = -1;
+    if (p->size > 2 * p->basis + 1) {
+        column[used] = 2 * p->basis + 1;
+        value[used++] = -t;
+    }
+    return used;
+}
+
+/* Normal matrix and gradient of the residuals within limit; their weights are 1 / sqrt(1 + (residual / scale)^2), or 1
+ * for scale 0. */
+static void accumulate(const problem *p, const double x[], double scale, double limit, double *matrix, double *gradient)
+{
+    const int n = p->size;
+    memset(matrix, 0, (size_t)(n * n) * sizeof *matrix);
+    memset(gradient, 0, (size_t)n * sizeof *gradient);
+    for (size_t i = 0; i < p->count; i++) {
+        const double r = p->residual[i];
+        if (!(fabs(r) <= limit)) continue;
+        const double weight = scale > 0 ? 1 / sqrt(1 + (r / scale) * (r / scale)) : 1;
+        int column[2 * 4 + 2];
+        double value[2 * 4 + 2];
+        const int used = derivatives(p, x, i, column, value);
+        for (int a = 0; a < used; a++) {
+            gradient[column[a]] += weight * value[a] * r;
+            for (int b = 0; b <= a; b++) matrix[column[a] * n + column[b]] += weight * value[a] * value[b];
+        }
+    }
+    for (int a = 0; a < n; a++)
+        for (int b = 0; b < a; b++) matrix[b * n + a] = matrix[a * n + b];
+}
+
+static double cost_of(const problem *p, double scale)
+{
+    double sum = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        const double z = fmin(fabs(p->residual[i]), p->limit) / scale;
+        sum += z * z / (sqrt(1 + z * z) + 1); /* sqrt(1 + z^2) - 1 without cancellation */
+    }
+    return sum * scale * scale;
+}
+
+/* Levenberg-Marquardt at a fixed scale. Feet and residuals are those of f->x before and after. */
+static void descend(problem *p, fit *f, double tolerance, double *matrix, double *damped)
+{
+    const int n = p->size;
+    double gradient[PLM_TUBE_PARAMETERS], step[PLM_TUBE_PARAMETERS], tried[PLM_TUBE_PARAMETERS];
+    double damping = 1e-3, column_scale[PLM_TUBE_PARAMETERS] = {0};
+    f->cost = cost_of(p, f->scale);
+    f->converged = false;
+    bool moved = true;
+    for (int k = 0; k < STEPS && !f->converged; k++, f->steps++) {
+        if (moved) accumulate(p, f->x, f->scale, p->limit, matrix, gradient);
+        memcpy(damped, matrix, (size_t)(n * n) * sizeof *matrix);
+        for (int a = 0; a < n; a++) {
+            column_scale[a] = fmax(column_scale[a], matrix[a * n + a]); /* More's scaling only grows */
+            damped[a * n + a] += damping * column_scale[a] + 1e-300;
+            step[a] = -gradient[a];
+        }
+        moved = plm_solve_spd(n, damped, step);
+        double largest = 0;
+        for (int a = 0; a < n; a++) {
+            tried[a] = f->x[a] + step[a];
+            largest = fmax(largest, fabs(step[a]));
+        }
+        if (moved) {
+            evaluate(p, tried);
+            const double cost = cost_of(p, f->scale);
+            moved = cost <= f->cost;
+            f->converged = largest < tolerance * fabs(f->x[2 * p->basis]) + 1e-15;
+            if (moved) {
+                memcpy(f->x, tried, (size_t)n * sizeof *tried);
+                f->cost = cost;
+            }
+        }
+        damping = moved ? fmax(damping * 0.1, 1e-12) : damping * 8;
+        if (damping > 1e12) break;
+    }
+    evaluate(p, f->x);
+}
+
+static double robust_sd(const problem *p)
+{
+    memcpy(p->scratch, p->residual, p->count * sizeof *p->residual);
+    return plm_order_robust_sd(p->scratch, p->count, 0);
+}
+
+/* Residuals at x, the feet found anew from the projections onto the chord. */
+static void evaluate_afresh(problem *p, const double x[])
+{
+    for (size_t i = 0; i < p->count; i++) {
+        double from_middle[3];
+        for (int k = 0; k < 3; k++) from_middle[k] = p->xyz[i][k] - p->axis.origin[k];
+        p->foot[i] = plm_dot(from_middle, p->axis.along) / p->axis.half;
+    }
+    evaluate(p, x);
+}
+
+/* Rounds of descent from the start in f->x. */
+static void solve(problem *p, fit *f, double *matrix, double *damped)
+{
+    evaluate_afresh(p, f->x);
+    for (int round = 0; round < ROUNDS; round++) {
+        const double sd = fmax(robust_sd(p), smallest_scale * fabs(f->x[2 * p->basis]) + 1e-30);
+        f->scale = loss_scale * sd;
+        const double limit = fmax(trimmed * sd, misfit * fabs(f->x[2 * p->basis]));
+        p->limit = round < FIRST_TRIMMED ? INFINITY : limit;
+        descend(p, f, round < ROUNDS - 1 ? settled : converged, matrix, damped);
+    }
+}
+
+/* Start at the given axis: radius is the median distance from it. */
+static void start_at_axis(problem *p, const plm_curve *start, fit *f)
+{
+    memset(f, 0, sizeof *f);
+    for (int c = 0; c < 2; c++) memcpy(f->x + c * p->basis, start->offset[c], (size_t)p->basis * sizeof *f->x);
+    for (size_t i = 0; i < p->count; i++) {
+        double at[3], gap[3];
+        plm_curve_point(start, plm_curve_foot(start, p->xyz[i]), at);
+        for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
+        p->scratch[i] = plm_norm(gap);
+    }
+    f->x[2 * p->basis] = plm_order_median(p->scratch, p->count);
+}
+
+/* Start at the algebraic circle (I. Kasa, 1976) of the points in the planes across the given axis: right where less than
+ * half of the circumference is seen and the given axis lies on the seen side. Points beyond 2.5 median distances are left
+ * out. false where no circle is determined. */
+static bool start_at_circle(const problem *p, const plm_curve *start, const fit *at_axis, fit *f)
+{
+    const double limit = 2.5 * at_axis->x[2 * p->basis];
+    double matrix[9] = {0}, right[3] = {0};
+    for (size_t i = 0; i < p->count; i++) {
+        double at[3], gap[3];
+        plm_curve_point(start, plm_curve_foot(start, p->xyz[i]), at);
+        for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
+        const double x = plm_dot(gap, start->across[0]) / limit, y = plm_dot(gap, start->across[1]) / limit;
+        const double square = x * x + y * y;
+        if (!(square <= 1)) continue;
+        const double row[3] = {x, y, 1};
+        for (int a = 0; a < 3; a++) {
+            for (int b = 0; b < 3; b++) matrix[a * 3 + b] += row[a] * row[b];
+            right[a] += row[a] * square;
+        }
+    }
+    if (!plm_solve_spd(3, matrix, right)) return false;
+    const double square = right[2] + 0.25 * (right[0] * right[0] + right[1] * right[1]);
+    if (!(square > 0)) return false;
+    *f = *at_axis;
+    for (int k = 0; k < p->basis; k++) {
+        f->x[k] += 0.5 * right[0] * limit;
+        f->x[p->basis + k] += 0.5 * right[1] * limit;
+    }
+    f->x[2 * p->basis] = sqrt(square) * limit;
+    return true;
+}
+
+/* Inverse of the symmetric positive definite matrix, and the condition of the matrix with unit diagonal, as the ratio
+ * of the extreme diagonals of its Cholesky factor. 0 where it is singular. */
+static int invert(int n, const double *matrix, double *work, double out[PLM_TUBE_PARAMETERS][PLM_TUBE_PARAMETERS],
+                  double *condition)
+{
+    double scale[PLM_TUBE_PARAMETERS];
+    for (int a = 0; a < n; a++) {
+        if (!(matrix[a * n + a] > 0)) return 0;
+        scale[a] = 1 / sqrt(matrix[a * n + a]);
+    }
+    for (int column = 0; column < n; column++) {
+        double right[PLM_TUBE_PARAMETERS] = {0};
+        for (int a = 0; a < n; a++)
+            for (int b = 0; b < n; b++) work[a * n + b] = matrix[a * n + b] * scale[a] * scale[b];
+        right[column] = 1;
+        if (!plm_solve_spd(n, work, right)) return 0;
+        for (int a = 0; a < n; a++) out[a][column] = right[a] * scale[a] * scale[column];
+    }
+    double low = work[0], high = work[0];
+    for (int a = 1; a < n; a++) {
+        low = fmin(low, work[a * n + a]);
+        high = fmax(high, work[a * n + a]);
+    }
+    *condition = high / low;
+    return 1;
+}
+
+/* Share of the directions around the axis in which inlying points lie. */
+static double coverage_of(const problem *p, double limit)
+{
+    bool seen[PLM_TUBE_SECTORS] = {false};
+    int filled = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!(fabs(p->residual[i]) <= limit)) continue;
+        double at[3], gap[3];
+        plm_curve_point(&p->axis, p->foot[i], at);
+        for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
+        const double angle = atan2(plm_dot(gap, p->axis.across[1]), plm_dot(gap, p->axis.across[0]));
+        int sector = (int)floor((angle / (2 * PLM_PI) + 0.5) * PLM_TUBE_SECTORS);
+        if (sector >= PLM_TUBE_SECTORS) sector = PLM_TUBE_SECTORS - 1;
+        if (!seen[sector]) filled++;
+        seen[sector] = true;
+    }
+    return (double)filled / PLM_TUBE_SECTORS;
+}
+
+/* Writes the result of the better fit, whose residuals and feet are in p. false where its matrix is singular. */
+static bool conclude(problem *p, const fit *best, double *matrix, double *work, plm_tube *tube)
+{
+    const int n = p->size;
+    plm_tube out = {
+        .axis = p->axis, .iteration_count = best->steps, .converged = best->converged, .parameter_count = n};
+    out.radius[0] = best->x[2 * p->basis];
+    out.radius[1] = n > 2 * p->basis + 1 ? best->x[2 * p->basis + 1] : 0;
+    out.robust_sd = robust_sd(p);
+    const double limit = inlying * fmax(out.robust_sd, smallest_scale * fabs(out.radius[0]));
+    double squares = 0, gradient[PLM_TUBE_PARAMETERS];
+    for (size_t i = 0; i < p->count; i++)
+        if (fabs(p->residual[i]) <= limit) {
+            squares += p->residual[i] * p->residual[i];
+            out.inlier_count++;
+        }
+    if (out.inlier_count <= (size_t)n) return false;
+    out.spread = sqrt(squares / (double)(out.inlier_count - (size_t)n));
+    out.coverage = coverage_of(p, limit);
+    accumulate(p, best->x, 0, limit, matrix, gradient);
+    if (!invert(n, matrix, work, out.covariance, &out.condition)) return false;
+    for (int a = 0; a < n; a++)
+        for (int b = 0; b < n; b++) out.covariance[a][b] *= out.spread * out.spread;
+    if (!(out.radius[0] > 0) || !isfinite(out.radius[0] + out.radius[1])) return false;
+    *tube = out;
+    return true;
+}
+
+plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
+                        plm_error *error)
+{
+    const int basis = plm_curve_basis_count(start), size = 2 * basis + 1 + taper;
+    if (count < 2 * (size_t)size)
+        return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for a tube of %d parameters; %d are needed",
+                        count, size, 2 * size);
+    problem p = {.xyz = xyz, .count = count, .axis = *start, .basis = basis, .size = size};
+    double *vectors = plm_alloc(3 * count, sizeof *vectors, error);
+    double *matrix = plm_alloc(2 * (size_t)(size * size), sizeof *matrix, error);
+    plm_status status = vectors && matrix ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) {
+        double *work = matrix + size * size;
+        p.foot = vectors, p.residual = vectors + count, p.scratch = vectors + 2 * count;
+        fit at_axis, at_circle;
+        start_at_axis(&p, start, &at_axis);
+        const bool two = start_at_circle(&p, start, &at_axis, &at_circle);
+        solve(&p, &at_axis, matrix, work);
+        fit *best = &at_axis;
+        if (two) {
+            solve(&p, &at_circle, matrix, work);
+            /* Costs at their own scales do not compare; the robust scales do. */
+            if (at_circle.x[2 * basis] > 0 && at_circle.scale < at_axis.scale * (1 - 1e-6)) best = &at_circle;
+        }
+        evaluate_afresh(&p, best->x);
+        if (!conclude(&p, best, matrix, work, tube))
+            status = plm_fail(error, PLM_E_DEGENERATE, "the %zu points determine no tube", count);
+    }
+    plm_free(vectors);
+    plm_free(matrix);
+    return status;
+}
+
+double plm_tube_radius(const plm_tube *tube, double t, double *std_error)
+{
+    const int a = 2 * plm_curve_basis_count(&tube->axis);
+    const bool taper = tube->parameter_count > a + 1;
+    if (std_error) {
+        double variance = tube->covariance[a][a];
+        if (taper) variance += 2 * t * tube->covariance[a][a + 1] + t * t * tube->covariance[a + 1][a + 1];
+        *std_error = sqrt(fmax(variance, 0));
+    }
+    return tube->radius[0] + (taper ? tube->radius[1] * t : 0);
+}
+
+double plm_tube_direction_error(const plm_tube *tube, double a, double b)
+{
+    const int n = plm_curve_basis_count(&tube->axis);
+    double row[PLM_CURVE_BASIS], variance = 0, from[3], to[3];
+    plm_curve_difference(&tube->axis, a, b, row);
+    for (int c = 0; c < 2; c++)
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) variance += 0.5 * row[i] * tube->covariance[c * n + i][c * n + j] * row[j];
+    plm_curve_point(&tube->axis, a, from);
+    plm_curve_point(&tube->axis, b, to);
+    for (int i = 0; i < 3; i++) to[i] -= from[i];
+    return sqrt(fmax(variance, 0)) / plm_norm(to);
+}

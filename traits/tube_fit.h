@@ -1,0 +1,43 @@
+/* traits/tube_fit.h: robust fit of a tube (curved axis, linear radius) to points of its surface. Internal. */
+#ifndef PLANTIMETER_TRAITS_TUBE_FIT_H
+#define PLANTIMETER_TRAITS_TUBE_FIT_H
+
+#include "cloud/cloud.h"
+#include "traits/axis_curve.h"
+
+enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 2, PLM_TUBE_SECTORS = 24 };
+
+/** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the two of the radius. */
+typedef struct plm_tube {
+    plm_curve axis;
+    double radius[2]; /**< radius at parameter t: radius[0] + radius[1] t */
+    double robust_sd; /**< robust SD of the residuals, all points */
+    double spread;    /**< SD of the inlying residuals (within 3 robust SD) */
+    size_t inlier_count;
+    double coverage;  /**< share of the directions around the axis in which inlying points lie */
+    double condition; /**< of the fit: large where short arcs leave radius and axis undetermined */
+    int iteration_count;
+    bool converged;
+    int parameter_count;
+    double covariance[PLM_TUBE_PARAMETERS][PLM_TUBE_PARAMETERS]; /**< of the parameters, from inlying residuals */
+} plm_tube;
+
+/** Fits a tube to count points. start gives the chord, the degree and spans of the axis, and its first shape.
+ *
+ * Residual: distance to the axis, at right angles to its local tangent, minus the radius there. Minimised: the sum of
+ * soft-L1 losses 2 f^2 (sqrt(1 + (residual / f)^2) - 1) with f = 1.5 robust SD, found again in three rounds, by
+ * Levenberg-Marquardt steps with analytic derivatives and column scaling (J. J. More, The Levenberg-Marquardt algorithm,
+ * 1978); from two starts (the given axis, and an algebraic circle about it), of which the better is kept.
+ * taper: whether the radius may change along the axis.
+ * PLM_E_DEGENERATE  fewer points than twice the parameters, or points that determine no tube. */
+plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
+                        plm_error *error);
+
+/** Radius at t, and its standard error by the covariance. */
+double plm_tube_radius(const plm_tube *tube, double t, double *std_error);
+
+/** Standard error of the direction of the axis' chord from parameter a to parameter b, radians: the mean over the two
+ * directions across it. */
+double plm_tube_direction_error(const plm_tube *tube, double a, double b);
+
+#endif
