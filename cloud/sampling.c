@@ -16,7 +16,7 @@ enum {
     QUADRIC_NEIGHBOURS = 24,
     QUADRIC_MAXIMUM = 250, /* largest neighbourhood of a quadric ... */
     QUADRIC_USED = 60,     /* ... of which so many strided points are fitted */
-    QUADRIC_WORK = 20000,  /* neighbours looked at in all */
+    QUADRIC_WORK = 12000,  /* neighbours looked at in all */
     QUADRIC_TERMS = 6,
     MINIMUM_POINTS = 12
 };

@@ -204,11 +204,35 @@ static void move_rim(const plm_leaf_draft *draft, const uint32_t *row_of, double
     }
 }
 
+/* Area of the triangles that touch the rim: what moving it changes. */
+static double rim_area(const plm_leaf_draft *draft, const plm_mesh *mesh)
+{
+    double sum = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        bool touches = false;
+        for (int i = 0; i < 3; i++) {
+            const double *out = draft->outward[draft->triangle[t][i]];
+            touches = touches || out[0] != 0 || out[1] != 0 || out[2] != 0;
+        }
+        if (!touches) continue;
+        const double *corner[3];
+        double a[3], b[3], normal[3];
+        for (int i = 0; i < 3; i++) corner[i] = mesh->vertex[mesh->triangle[t][i]];
+        for (int i = 0; i < 3; i++) {
+            a[i] = corner[1][i] - corner[0][i];
+            b[i] = corner[2][i] - corner[0][i];
+        }
+        plm_cross(a, b, normal);
+        sum += 0.5 * plm_norm(normal);
+    }
+    return sum;
+}
+
 plm_status plm_leaf_draft_finish(const plm_leaf_draft *draft, double area, double furthest, plm_mesh *mesh,
                                  double *drawn, plm_error *error)
 {
     plm_mesh made = {0};
-    double before = 0, after = 0;
+    double before = 0;
     uint32_t *row_of = plm_alloc(draft->point_count, sizeof *row_of, error);
     plm_status status = row_of ? plm_mesh_create(draft->point_count, draft->count, &made, error) : PLM_E_MEMORY;
     if (status == PLM_OK) status = number_vertices(draft, &made, row_of, error);
@@ -216,9 +240,9 @@ plm_status plm_leaf_draft_finish(const plm_leaf_draft *draft, double area, doubl
     if (status == PLM_OK) {
         /* The area grows nearly in proportion: one step of known length gives the step that is wanted. */
         const double step = area >= before ? 0.5 * furthest : -0.5 * furthest;
+        const double at_rim = rim_area(draft, &made);
         move_rim(draft, row_of, step, &made);
-        status = plm_mesh_area(&made, &after, error);
-        const double grown = (after - before) / step;
+        const double grown = (rim_area(draft, &made) - at_rim) / step;
         const double wanted = grown > 0 ? (area - before) / grown : 0;
         move_rim(draft, row_of, fmax(-furthest, fmin(furthest, wanted)), &made);
     }
