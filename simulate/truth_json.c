@@ -1,6 +1,7 @@
 /* simulate/truth_json.c: the truth as JSON, in the layout of the development clouds' truth files: metres and degrees. */
 #include <jansson.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cloud/linear.h"
@@ -17,6 +18,15 @@ static void put(json_t *object, const char *key, json_t *value)
 static void put_real(json_t *object, const char *key, double value)
 {
     if (isfinite(value)) put(object, key, json_real(value));
+}
+
+/* To 12 digits: a hull's facets in one plane may be cut into triangles in more than one way, which changes the last digits. */
+static void put_hull(json_t *object, const char *key, double value)
+{
+    char text[32];
+    if (!isfinite(value)) return;
+    snprintf(text, sizeof text, "%.12g", value);
+    put_real(object, key, strtod(text, NULL));
 }
 
 static void put_angle(json_t *object, const char *key, double radians)
@@ -173,8 +183,8 @@ static json_t *plant_object(const plm_virtual_plant *plant)
     for (size_t k = 0; k < plant->leaf_count; k++) cotyledons += plant->leaf[k].role == PLM_LEAF_COTYLEDON;
     put_real(object, "plant_height", whole->height);
     put_real(object, "plant_width", whole->width);
-    put_real(object, "convex_hull_volume", whole->hull_volume);
-    put_real(object, "convex_hull_area", whole->hull_area);
+    put_hull(object, "convex_hull_volume", whole->hull_volume);
+    put_hull(object, "convex_hull_area", whole->hull_area);
     put_real(object, "pca1", whole->pca1);
     put_real(object, "pca2", whole->pca2);
     put_real(object, "pca_variance_ratio", whole->pca_variance_ratio);

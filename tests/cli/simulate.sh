@@ -1,0 +1,21 @@
+# Virtual plants come with their truth, and are the same again for the same seed on any number of threads.
+simulate() {
+    plantimeter simulate --resolution 0.2 --points 500 --seed 3 "$@"
+    code=$?
+    [ $code -eq 0 ] || echo "exit code $code"
+}
+OMP_NUM_THREADS=1 simulate -q pepper -n 2 -o first
+OMP_NUM_THREADS=3 simulate -q pepper -n 2 -o again
+ls first
+diff -r first again && echo same
+echo 'as gaussians, in a pot:'
+simulate -q pepper --scanner splat --format 3dgs --pot -o splat
+ls splat
+echo 'the mesh alone:'
+simulate -q bare_stem --scanner none -o mesh
+ls mesh
+echo 'what cannot be:'
+simulate tomatoe -o wrong
+simulate pepper --format 3dgs -o wrong
+simulate pepper
+simulate -o wrong
