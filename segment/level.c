@@ -12,7 +12,7 @@
 static const double flat = 0.90;            /* |normal . up| of a horizontal patch: within 26 degrees */
 static const double widest_tilt = 15;       /* degrees */
 static const double smallest_share = 0.004; /* of the patches: a level with fewer is none */
-enum { TILT_BINS = 61, SMALLEST = 12, FITS = 6 };
+enum { TILT_BINS = 31, SMALLEST = 12, FITS = 6 };
 
 /* ---- The stand ----------------------------------------------------------------------------------------------- */
 
@@ -86,7 +86,7 @@ double plm_find_tilt(const plm_surfels *s, const double up[3], double direction[
         weight[half + (int)a][half + (int)b]++;
         total++;
     }
-    enum { WINDOW = 8 }; /* about 4 degrees */
+    enum { WINDOW = 4 }; /* about 4 degrees */
     double best = 0, at[2] = {0, 0};
     for (int a = 0; a < TILT_BINS; a++)
         for (int b = 0; b < TILT_BINS; b++) {

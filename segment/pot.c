@@ -110,7 +110,7 @@ static void fill_map(const plm_stand *t, const plm_pot *pot, bool round, map *m)
     for (size_t k = 0; k < t->surfels->count; k++) {
         double du, dv;
         if (!faces(t, k, pot, round, &du, &dv)) continue;
-        const double ring = hypot(du, dv) / shape_at(pot->shape, du, dv) / t->surfels->cell;
+        const double ring = sqrt(du * du + dv * dv) / shape_at(pot->shape, du, dv) / t->surfels->cell;
         const double row = (t->place[k][2] - m->low) / m->step;
         if (ring >= 0 && ring < m->rings && row >= 0 && row < m->rows)
             m->sector[(size_t)row * (size_t)m->rings + (size_t)ring] |= UINT64_C(1) << sector_of(du, dv);
@@ -185,7 +185,7 @@ static void centre_axis(const plm_stand *t, bool round, plm_pot *pot)
         double du, dv;
         const double w = t->place[k][2];
         if (w < pot->foot || w > pot->rim || !faces(t, k, pot, round, &du, &dv)) continue;
-        const double shape = shape_at(pot->shape, du, dv), r = hypot(du, dv);
+        const double shape = shape_at(pot->shape, du, dv), r = sqrt(du * du + dv * dv);
         const double off = r - plm_pot_radius(pot, w) * shape;
         if (fabs(off) > band) continue;
         const double x = (w - middle) / half, row[4] = {du / r, dv / r, x * du / r, x * dv / r};
@@ -261,7 +261,7 @@ static void refine_radius(const plm_stand *t, bool round, plm_pot *pot)
         const double w = t->place[k][2];
         const int row = (int)((w - pot->foot) / pot->step);
         if (w < pot->foot || row >= pot->rows || !faces(t, k, pot, round, &du, &dv)) continue;
-        const double r = hypot(du, dv) / shape_at(pot->shape, du, dv);
+        const double r = sqrt(du * du + dv * dv) / shape_at(pot->shape, du, dv);
         if (fabs(r - pot->radius[row]) > band) continue;
         sum[row] += r;
         n[row]++;

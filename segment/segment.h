@@ -30,9 +30,11 @@ typedef struct plm_frame {
     const char *evidence;  /**< "given", "ground", "tubes", "default", ...: static text */
 } plm_frame;
 
-/** Finds zenith. up other than PLM_UP_AUTO is taken as it is. AUTO weighs the ground plane, the direction of stems and
- * the shape, and settles on the nearest of the six axes, as files are nearly always axis-aligned: a tilted frame would
- * spoil every angle. PLM_E_DEGENERATE for an empty cloud. */
+/** Finds zenith. up other than PLM_UP_AUTO is taken as it is. AUTO asks the ground (soil, pot, table), then the direction
+ * of stems, and settles on the nearest of the six axes, as files are nearly always axis-aligned: a tilted frame would
+ * spoil every angle. Only ground that is tilted by more than 25 degrees against all axes gives another direction. Where
+ * neither is clear, z ("default"): rosettes and heads without ground, single leaves. PLM_E_DEGENERATE for an empty
+ * cloud. */
 PLM_API plm_status plm_find_up(const plm_cloud *cloud, plm_up up, plm_frame *frame, plm_error *error);
 
 /** Turns a cloud (coordinates, normals) into the frame, in place; the origin is turned too. */
