@@ -30,6 +30,7 @@ void plm_light_defaults(plm_light_options *options)
 
 typedef struct light_source {
     double up[3], u[3], v[3];
+    double shift[5]; /* of the sequence, drawn anew for each part of the rays */
 } light_source;
 
 /* Everything that a ray needs to know. */
@@ -51,15 +52,21 @@ typedef struct tally {
 
 /* ---- Rays ------------------------------------------------------------------------------------------------------- */
 
-/* Five numbers in [0, 1) for ray k of a part: the R5 sequence (M. Roberts, 2018: powers of the root of x^6 = x + 1), shifted. */
-static void spread(uint64_t key, uint64_t k, double draw[5])
+/* Five numbers in [0, 1) for ray k of a source: the R5 sequence (M. Roberts, 2018: powers of the root of x^6 = x + 1), shifted. */
+static void spread(const double shift[5], uint64_t k, double draw[5])
 {
     static const double step[5] = {0.8812714616335696, 0.7766393890897682, 0.6844301295853426, 0.6031687406857282,
                                    0.5315553977157913};
     for (int i = 0; i < 5; i++) {
-        const double at = plm_uniform_at(key, (uint64_t)i) + step[i] * (double)k;
-        draw[i] = at - floor(at);
+        const double at = shift[i] + step[i] * (double)k;
+        draw[i] = at - (double)(int64_t)at; /* at is not negative */
     }
+}
+
+static void draw_shifts(light_run *run, uint64_t key)
+{
+    for (int k = 0; k < run->options->circles * run->options->around; k++)
+        for (int i = 0; i < 5; i++) run->source[k].shift[i] = plm_uniform_at(plm_key(key, (uint64_t)k), (uint64_t)i);
 }
 
 /* Direction to each source, and two axes across it. */
@@ -127,17 +134,17 @@ static void follow(const light_run *run, uint64_t key, uint64_t number, int sour
 {
     double draw[5], origin[3], direction[3], band[PLM_LIGHT_BANDS] = {1.0 / 3, 1.0 / 3, 1.0 / 3};
     uint64_t energy = PARCEL;
-    spread(plm_key(key, (uint64_t)source), number, draw);
+    uint64_t later = 0; /* the stream of the second scattering and those after it: few rays get there */
+    spread(run->source[source].shift, number, draw);
     start_ray(run, source, draw, origin, direction);
-    const uint64_t later = plm_key(key, 1000003 + number * 128 + (uint64_t)source);
     for (int depth = 0; depth < run->options->depth && energy; depth++) {
         plm_hit hit;
         count->rays++;
         if (!plm_rays_first(run->rays, origin, direction, 0, INFINITY, &hit)) break;
         energy = absorb(run, energy, band, &count->face[hit.face]);
         if (!energy) break;
-        if (depth)
-            for (int i = 0; i < 3; i++) draw[2 + i] = plm_uniform_at(later, (uint64_t)(3 * depth + i));
+        if (depth == 1) later = plm_key(key, 1000003 + number * 131072 + (uint64_t)source);
+        for (int i = 0; depth && i < 3; i++) draw[2 + i] = plm_uniform_at(later, (uint64_t)(3 * depth + i));
         const double *n = run->normal[hit.face];
         const bool is_front = plm_dot(n, direction) < 0;
         /* reflected to the side it came from, transmitted to the other */
@@ -203,11 +210,12 @@ static void place_sphere(light_run *run)
 }
 
 /* Rays [part's share] of every source; thread t counts into count[t]. */
-static void trace_part(const light_run *run, int part, tally *count, int threads)
+static void trace_part(light_run *run, int part, tally *count, int threads)
 {
     const int sources = run->options->circles * run->options->around;
     const uint64_t key = plm_key(run->options->seed, 500 + (uint64_t)part);
     const uint64_t jobs = run->options->rays;
+    draw_shifts(run, key);
     const uint64_t first = jobs * (uint64_t)part / PARTS, last = jobs * ((uint64_t)part + 1) / PARTS;
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++) {
