@@ -158,7 +158,7 @@ static plm_leaf_cut cut_in_half(probe *probes, size_t count)
         if (spread < least) least = spread, best = i;
     }
     sort_along(probes, count, axis[best]);
-    plm_leaf_cut cut;
+    plm_leaf_cut cut = {0};
     memcpy(cut.normal, axis[best], sizeof cut.normal);
     cut.offset = 0.5 * (probes[count / 2 - 1].along + probes[count / 2].along);
     return cut;

@@ -112,12 +112,13 @@ plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error
     offset_point *point = plm_scratch_take(&scratch, sketch->working.count, sizeof *point);
     double(*e)[2] = plm_scratch_take(&scratch, sketch->working.count, sizeof *e);
     double(*buffer)[3] = plm_scratch_take(&scratch, stem->count, sizeof *buffer);
+    float *radius = plm_scratch_take(&scratch, stem->count, sizeof *radius);
     float *value = plm_scratch_take(&scratch, stem->count + 8, sizeof *value);
     for (int round = 0; round < ROUNDS && !scratch.failed; round++) {
         const size_t count = gather(sketch, stem, point);
         for (size_t n = 0; n < stem->count; n++) fit_node(sketch, stem, n, point, count, e);
         plm_stem_smooth(stem, 2, buffer);
-        smooth_radius(stem, (float *)buffer, value);
+        smooth_radius(stem, radius, value);
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

@@ -78,7 +78,7 @@ plm_status plm_dome_cast(const plm_stage_set *stage, const plm_scan_options *opt
         if (made[s] != PLM_OK)
             status = plm_fail(error, made[s], "scanner %d of the dome: %s", s, plm_status_name(made[s]));
     for (int s = 0; s < SCANNERS; s++) {
-        for (size_t k = 0; k < part[s].count && status == PLM_OK; k++)
+        for (size_t k = 0; samples && k < part[s].count && status == PLM_OK; k++)
             status = plm_samples_add(samples, &part[s].sample[k], error);
         plm_free(part[s].sample);
     }

@@ -156,7 +156,7 @@ static plm_status run_batch(const measure_settings *settings, plm_measure_option
     batch open;
     progress_line line = progress_begin(settings->quiet);
     measure->progress = progress_stage;
-    measure->progress_user = &line;
+    measure->progress_user = &line; /* used during this call only */ // cppcheck-suppress autoVariables
     const plant_run_options run = {.reading = &settings->reading,
                                    .measure = measure,
                                    .with_files = settings->output && settings->files == 0,

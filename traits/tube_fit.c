@@ -143,7 +143,7 @@ static double cost_of(const problem *p, double scale)
 static void descend(problem *p, fit *f, double tolerance, double *matrix, double *damped)
 {
     const int n = p->size;
-    double gradient[PLM_TUBE_PARAMETERS], step[PLM_TUBE_PARAMETERS], tried[PLM_TUBE_PARAMETERS];
+    double gradient[PLM_TUBE_PARAMETERS] = {0}, step[PLM_TUBE_PARAMETERS], tried[PLM_TUBE_PARAMETERS];
     double damping = 1e-3, column_scale[PLM_TUBE_PARAMETERS] = {0};
     f->cost = cost_of(p, f->scale);
     f->converged = false;
