@@ -18,6 +18,7 @@ static const plm_option options[] = {
 typedef struct cloud_facts {
     double low[3], high[3];
     double spacing, noise; /* 0: too few points */
+    plm_frame frame;
 } cloud_facts;
 
 static plm_status find_sampling(const plm_cloud *cloud, plm_sampling *sampling, plm_error *error)
@@ -30,7 +31,7 @@ static plm_status find_sampling(const plm_cloud *cloud, plm_sampling *sampling, 
     return status == PLM_E_DEGENERATE ? PLM_OK : status;
 }
 
-static plm_status find_facts(const loaded_cloud *loaded, cloud_facts *facts, plm_error *error)
+static plm_status find_facts(const loaded_cloud *loaded, plm_up up, cloud_facts *facts, plm_error *error)
 {
     const double to_file = 1 / loaded->scale.metres_per_unit;
     float low[3], high[3];
@@ -42,9 +43,18 @@ static plm_status find_facts(const loaded_cloud *loaded, cloud_facts *facts, plm
         facts->low[axis] = (loaded->cloud.origin[axis] + low[axis]) * to_file;
         facts->high[axis] = (loaded->cloud.origin[axis] + high[axis]) * to_file;
     }
+    status = plm_find_up(&loaded->cloud, up, &facts->frame, error);
+    if (status != PLM_OK) return status;
     facts->spacing = sampling.spacing * to_file;
     facts->noise = sampling.noise * to_file;
     return PLM_OK;
+}
+
+/* The axis, or that it is none of the six. */
+static const char *up_name(const plm_frame *frame)
+{
+    static const char *const names[] = {"tilted", "x", "y", "z", "-x", "-y", "-z"};
+    return names[frame->up];
 }
 
 static void print_text(const char *path, const loaded_cloud *loaded, const cloud_facts *facts)
@@ -64,6 +74,8 @@ static void print_text(const char *path, const loaded_cloud *loaded, const cloud
     printf("size          %.6g %.6g %.6g\n", facts->high[0] - facts->low[0], facts->high[1] - facts->low[1],
            facts->high[2] - facts->low[2]);
     if (facts->spacing > 0) printf("spacing       %.4g (noise %.3g)\n", facts->spacing, facts->noise);
+    printf("up            %s (%s, confidence %.2f)\n", up_name(&facts->frame), facts->frame.evidence,
+           facts->frame.confidence);
     printf("unit          %s: %.9g m (%s)\n", loaded->scale.unit, loaded->scale.metres_per_unit,
            loaded->scale.evidence);
 }
@@ -73,14 +85,16 @@ static plm_status print_json(const char *path, const loaded_cloud *loaded, const
     plm_json_use_seam();
     const plm_read_report *report = &loaded->report;
     json_t *root = json_pack(
-        "{s:s, s:s?, s:s, s:I, s:I, s:I, s:I, s:I, s:s?, s:s?, s:[f,f,f], s:[f,f,f], s:f, s:f, s:{s:s, s:f, s:s}}",
+        "{s:s, s:s?, s:s, s:I, s:I, s:I, s:I, s:I, s:s?, s:s?, s:[f,f,f], s:[f,f,f], s:f, s:f, s:{s:s, s:f, s:s}, "
+        "s:{s:s, s:f, s:s}}",
         "version", PLM_VERSION, "input", path, "format", report->description, "points", (json_int_t)loaded->cloud.count,
         "rows", (json_int_t)report->rows, "dropped_not_finite", (json_int_t)report->dropped_not_finite,
         "dropped_transparent", (json_int_t)report->dropped_transparent, "dropped_withheld",
         (json_int_t)report->dropped_withheld, "fields", report->fields, "label_field", report->label_field, "low",
         facts->low[0], facts->low[1], facts->low[2], "high", facts->high[0], facts->high[1], facts->high[2], "spacing",
         facts->spacing, "noise", facts->noise, "unit", "name", loaded->scale.unit, "metres_per_unit",
-        loaded->scale.metres_per_unit, "evidence", loaded->scale.evidence);
+        loaded->scale.metres_per_unit, "evidence", loaded->scale.evidence, "up", "axis", up_name(&facts->frame),
+        "confidence", facts->frame.confidence, "evidence", facts->frame.evidence);
     plm_status status = plm_json_check(root, error);
     if (status == PLM_OK && json_dumpf(root, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0)
         status = plm_fail(error, PLM_E_WRITE, "standard output: the JSON cannot be written");
@@ -95,7 +109,7 @@ static plm_status show_info(const char *path, const info_settings *settings, plm
     plm_status status = load_cloud(path, &settings->reading, false, &loaded, error);
     if (status != PLM_OK) return status;
     cloud_facts facts = {0};
-    status = find_facts(&loaded, &facts, error);
+    status = find_facts(&loaded, (plm_up)settings->reading.up, &facts, error);
     if (status == PLM_OK && settings->json)
         status = print_json(path, &loaded, &facts, error);
     else if (status == PLM_OK)
@@ -119,7 +133,7 @@ static int run(int argc, char **argv)
 
 const plm_command plm_command_info = {.name = "info",
                                       .arguments = "[OPTION]... CLOUD",
-                                      .summary = "tell what a CLOUD holds: points, fields, size, spacing, unit",
+                                      .summary = "tell what a CLOUD holds: points, fields, size, spacing, unit, up",
                                       .options = options,
                                       .option_count = COUNT(options),
                                       .shared = reading_options,

@@ -202,6 +202,12 @@ static plm_status find_scale(const reading_settings *settings, const plm_cloud *
                              plm_unit_scale *scale, plm_error *error)
 {
     static const char *const units[] = {"", "m", "cm", "mm"};
+    if (settings->scale_from) {
+        double diameter;
+        const plm_status status = parse_scale_from(settings->scale_from, &diameter, error);
+        if (status != PLM_OK) return status;
+        return plm_scale_of_pot(cloud, (plm_up)settings->up, diameter, scale, error);
+    }
     if (settings->known_length) return scale_of_known_length(cloud, settings->known_length, scale, error);
     if (settings->unit != UNIT_AUTO) {
         *scale = (plm_unit_scale){.metres_per_unit = unit_metres[settings->unit], .unit = units[settings->unit]};

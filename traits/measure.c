@@ -45,10 +45,10 @@ static plm_status warn(plant_job *job, plm_error *error, const char *format, ...
 
 static plm_status run_frame(plant_job *job, plm_error *error)
 {
-    (void)error;
-    plm_frame *frame = &job->draft->frame;
-    *frame = (plm_frame){.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .up = PLM_UP_Z, .evidence = "default"};
-    return PLM_OK;
+    plm_measurement *draft = job->draft;
+    const plm_status status = plm_find_up(&draft->cloud, job->options->up, &draft->frame, error);
+    if (status == PLM_OK) plm_frame_apply(&draft->frame, &draft->cloud);
+    return status;
 }
 
 /* Whether any of the labels that came with the cloud is ground. */

@@ -147,6 +147,11 @@ PLM_API plm_status plm_scale_guess(const plm_cloud *cloud, plm_unit_scale *scale
 PLM_API plm_status plm_scale_of_length(const double a[3], const double b[3], double metres, plm_unit_scale *scale,
                                        plm_error *error);
 
+/** The scale from the outer diameter of the pot's rim, metres. up: as in plm_find_up.
+ * PLM_E_DEGENERATE  no pot is found. */
+PLM_API plm_status plm_scale_of_pot(const plm_cloud *cloud, plm_up up, double diameter, plm_unit_scale *scale,
+                                    plm_error *error);
+
 /** Multiplies coordinates, origin and extents by factor, in place. */
 PLM_API void plm_cloud_rescale(plm_cloud *cloud, double factor);
 

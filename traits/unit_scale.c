@@ -107,6 +107,46 @@ plm_status plm_scale_of_length(const double a[3], const double b[3], double metr
     return PLM_OK;
 }
 
+/* The points that ground is looked for in, turned upright: coordinates and colour alone. */
+static plm_status upright_copy(const plm_cloud *cloud, plm_up up, plm_cloud *copy, plm_error *error)
+{
+    plm_status status = plm_cloud_create(cloud->count, cloud->rgb ? PLM_HAS_RGB : 0, copy, error);
+    if (status != PLM_OK) return status;
+    memcpy(copy->origin, cloud->origin, sizeof copy->origin);
+    memcpy(copy->xyz, cloud->xyz, cloud->count * sizeof *cloud->xyz);
+    if (cloud->rgb) memcpy(copy->rgb, cloud->rgb, cloud->count * sizeof *cloud->rgb);
+    plm_frame frame;
+    status = plm_find_up(copy, up, &frame, error);
+    if (status == PLM_OK)
+        plm_frame_apply(&frame, copy);
+    else
+        plm_cloud_free(copy);
+    return status;
+}
+
+plm_status plm_scale_of_pot(const plm_cloud *cloud, plm_up up, double diameter, plm_unit_scale *scale, plm_error *error)
+{
+    if (!(diameter > 0) || !isfinite(diameter))
+        return plm_fail(error, PLM_E_ARGUMENT, "the pot's diameter is %g m; expected more than 0", diameter);
+    plm_cloud copy;
+    plm_ground ground;
+    plm_status status = upright_copy(cloud, up, &copy, error);
+    if (status != PLM_OK) return status;
+    uint8_t *label = plm_alloc_zero(copy.count, sizeof *label, error);
+    status = label ? plm_find_ground(&copy, PLM_GROUND_AUTO, 0, label, &ground, error) : PLM_E_MEMORY;
+    plm_free(label);
+    plm_cloud_free(&copy);
+    if (status != PLM_OK) return status;
+    if (!ground.has_pot || !(ground.pot_diameter > 0))
+        return plm_fail(error, PLM_E_DEGENERATE,
+                        "no pot was found to take the scale from; --scale or --known-length "
+                        "gives it in another way");
+    *scale = (plm_unit_scale){.metres_per_unit = diameter / ground.pot_diameter, .unit = "?"};
+    snprintf(scale->evidence, sizeof scale->evidence, "pot: %.6g units across its rim are %.6g m", ground.pot_diameter,
+             diameter);
+    return PLM_OK;
+}
+
 void plm_cloud_rescale(plm_cloud *cloud, double factor)
 {
     if (factor == 1) return;
