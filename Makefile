@@ -39,8 +39,9 @@ fuzz: packages ## run each fuzz target for FUZZ_SECONDS
 bench: build ## measure speed against PCL, FLANN, CGAL and qhull, as ratios
 	@sh bench/run.sh build/release/bench $(BENCH) $(BENCH_CSV)
 
-docs: build ## build the API reference in build/docs (no warnings allowed) and refresh docs/traits.md
+docs: build ## build the API reference in build/docs (no warnings allowed) and refresh docs/traits.md, docs/statistics.md
 	@build/release/plantimeter traits --markdown >docs/traits.md
+	@build/release/plantimeter validate --statistics >docs/statistics.md
 	@mkdir -p build/docs && doxygen docs/Doxyfile
 
 format: packages ## format every source file

@@ -10,6 +10,7 @@
 
 typedef struct column_set {
     size_t plant, organ, organ_id, trait, value, unit, x, y, z, std_error, status;
+    bool is_field_book;
 } column_set;
 
 static plm_status find_columns(const plm_table *table, const char *path, column_set *c, plm_error *error)
@@ -29,7 +30,8 @@ static plm_status find_columns(const plm_table *table, const char *path, column_
         return plm_fail(error, PLM_E_FORMAT,
                         "%s: line 1: no column \"%s\"; plant_id, organ, organ_id, trait, value, unit were expected",
                         path, c->trait == SIZE_MAX ? "trait" : "value");
-    if (c->plant == SIZE_MAX) c->plant = 0; /* Field Book: the unique id comes first */
+    c->is_field_book = c->plant == SIZE_MAX;
+    if (c->is_field_book) c->plant = 0; /* the unique id comes first */
     return PLM_OK;
 }
 
@@ -70,11 +72,14 @@ static plm_status take_row(plm_readings *r, size_t row, const column_set *c, con
                          .trait = trait_name,
                          .group = "",
                          .repeat_count = 1};
-    if (!plm_table_number(text, &out->value))
-        return plm_fail(error, PLM_E_FORMAT, "%s: line %zu: value \"%s\" is not a number", path, r->table.line[row + 1],
-                        text);
     const char *unit = "";
     const plm_trait *trait = find_trait(trait_name, &unit);
+    if (!plm_table_number(text, &out->value)) {
+        *used = trait || !c->is_field_book; /* scores, colours and photos of other traits are no readings */
+        if (!*used) return PLM_OK;
+        return plm_fail(error, PLM_E_FORMAT, "%s: line %zu: value \"%s\" is not a number", path, r->table.line[row + 1],
+                        text);
+    }
     if (!out->unit[0]) out->unit = unit[0] ? unit : trait ? plm_unit_name(trait->unit) : "1";
     if (!out->organ[0]) out->organ = trait ? plm_level_name(trait->level) : "plant";
     out->has_position = position_of(&r->table, row, c, out->position);

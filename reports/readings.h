@@ -24,8 +24,9 @@ typedef struct plm_readings {
 
 /** Reads a table of readings. Columns: plant_id, organ, organ_id, trait, value, unit, and where they are there x, y, z,
  * std_error, status (rows whose status is not ok are skipped). Field Book's database export is recognised by its columns trait
- * and value without plant_id: its first column is the plant, and the trait may end in its unit (`plant_height_mm`). An
- * empty organ is the level of the trait in the trait table; an empty unit is the trait's unit there. Rows of the same plant,
+ * and value without plant_id: its first column is the plant, the trait may end in its unit (`plant_height_mm`), and values of
+ * other traits that are no numbers (scores, photos) are skipped. An empty
+ * organ is the level of the trait in the trait table; an empty unit is the trait's unit there. Rows of the same plant,
  * organ, number and trait are repeats: their mean counts once.
  * PLM_E_FORMAT names file, line and column of what cannot be understood. */
 plm_status plm_readings_load(const char *path, plm_readings *readings, plm_error *error);
