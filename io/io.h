@@ -85,6 +85,21 @@ PLM_API plm_status plm_cloud_write(const char *path, const plm_cloud *cloud, plm
  * that names a vertex which the mesh lacks), PLM_E_LIBRARY. */
 PLM_API plm_status plm_mesh_write(const char *path, const plm_mesh *mesh, plm_error *error);
 
+/** Reads a mesh: PLY (ascii, binary of both byte orders; element face with vertex_indices) or OBJ. Polygons become fans of
+ * triangles about their first corner.
+ * path        "-" is standard input.
+ * mesh        out, the caller's (plm_mesh_free); in the file's unit and axes, origin in its middle. face_organ from the face
+ *             property `organ` of PLY or the number of the line o or g in OBJ, from 0 on; NULL where there are none.
+ * face_label  out, the caller's (plm_free), may be NULL: plm_label of every triangle; NULL where the file has no face property
+ *             `label`.
+ * PLM_E_READ, PLM_E_FORMAT (line or byte, found, expected; faces that name vertices which are not there), PLM_E_MEMORY. Outputs
+ * are written only when PLM_OK comes back. */
+PLM_API plm_status plm_mesh_read(const char *path, plm_mesh *mesh, uint8_t **face_label, plm_error *error);
+
+/** The same from a buffer in memory; name stands for the file in messages. */
+PLM_API plm_status plm_mesh_parse(const void *data, size_t size, const char *name, plm_mesh *mesh, uint8_t **face_label,
+                                  plm_error *error);
+
 /** Opens path + ".part" for writing; plm_output_close renames it to path when all went well (ok true and no write
  * error), and removes it else. The seam through which every file of the project is written. */
 typedef struct plm_output plm_output;
@@ -92,6 +107,9 @@ PLM_API plm_status plm_output_open(const char *path, plm_output **output, plm_er
 PLM_API plm_status plm_output_write(plm_output *output, const void *data, size_t size, plm_error *error);
 PLM_API plm_status plm_output_print(plm_output *output, plm_error *error, const char *format, ...) PLM_PRINTF(3, 4);
 PLM_API plm_status plm_output_close(plm_output *output, bool ok, plm_error *error);
+
+/** Makes a folder and those above it; one that is there already is no error. PLM_E_WRITE. */
+PLM_API plm_status plm_folder_make(const char *folder, plm_error *error);
 
 /** SHA-256 of a file's bytes as 64 lower-case hexadecimal digits and a zero. */
 PLM_API plm_status plm_file_sha256(const char *path, char digest[65], plm_error *error);

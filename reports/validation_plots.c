@@ -5,11 +5,9 @@
 #include "io/io.h"
 #include "reports/csv_write.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { PATH_ROOM = 4096 };
 
@@ -133,10 +131,8 @@ static plm_status write_script(const plm_validated_group *g, const char *folder,
 
 plm_status plm_validation_plots(const plm_validation *validation, const char *folder, bool *drawn, plm_error *error)
 {
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return plm_fail(error, PLM_E_WRITE, "%s: %s", folder, strerror(errno));
     *drawn = true;
-    plm_status status = PLM_OK;
+    plm_status status = plm_folder_make(folder, error);
     for (size_t i = 0; i < validation->group_count && status == PLM_OK; i++) {
         const plm_validated_group *g = &validation->group[i];
         if (strcmp(g->group, "all")) continue;

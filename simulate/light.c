@@ -4,17 +4,14 @@
  * transmitted as a whole, by a draw in proportion to both. Energy is counted in whole numbers: sums then come out the same in any order
  * of threads, and nothing is lost. */
 #include <math.h>
+#include <omp.h>
 #include <string.h>
 
 #include "cloud/linear.h"
+#include "simulate/light_rays.h"
 #include "simulate/random.h"
-#include "simulate/rays.h"
-#include "simulate/simulate.h"
 
 enum { PARTS = 16, MAXIMUM_DEPTH = 100 };
-
-/* Energy of one ray when it starts. 1e9 rays of it still fit into 64 bits. */
-#define PARCEL ((uint64_t)1 << 33)
 
 void plm_light_defaults(plm_light_options *options)
 {
@@ -28,134 +25,6 @@ void plm_light_defaults(plm_light_options *options)
                                    .depth = 10};
 }
 
-typedef struct light_source {
-    double up[3], u[3], v[3];
-    double shift[5]; /* of the sequence, drawn anew for each part of the rays */
-} light_source;
-
-/* Everything that a ray needs to know. */
-typedef struct light_run {
-    const plm_mesh *mesh;
-    const plm_light_options *options;
-    const plm_rays *rays;
-    light_source *source;
-    double (*normal)[3];           /* of every face */
-    double centre[3], radius, gap; /* gap: how far off a face a new ray starts */
-    double absorptance[PLM_LIGHT_BANDS];
-} light_run;
-
-/* What one thread has counted. */
-typedef struct tally {
-    uint64_t *face;
-    uint64_t escaped, rays;
-} tally;
-
-/* ---- Rays ------------------------------------------------------------------------------------------------------- */
-
-/* Five numbers in [0, 1) for ray k of a source: the R5 sequence (M. Roberts, 2018: powers of the root of x^6 = x + 1), shifted. */
-static void spread(const double shift[5], uint64_t k, double draw[5])
-{
-    static const double step[5] = {0.8812714616335696, 0.7766393890897682, 0.6844301295853426, 0.6031687406857282,
-                                   0.5315553977157913};
-    for (int i = 0; i < 5; i++) {
-        const double at = shift[i] + step[i] * (double)k;
-        draw[i] = at - (double)(int64_t)at; /* at is not negative */
-    }
-}
-
-static void draw_shifts(light_run *run, uint64_t key)
-{
-    for (int k = 0; k < run->options->circles * run->options->around; k++)
-        for (int i = 0; i < 5; i++) run->source[k].shift[i] = plm_uniform_at(plm_key(key, (uint64_t)k), (uint64_t)i);
-}
-
-/* Direction to each source, and two axes across it. */
-static void place_sources(light_run *run)
-{
-    for (int k = 0; k < run->options->circles * run->options->around; k++) {
-        const int circle = k / run->options->around, place = k % run->options->around;
-        const double elevation = 0.5 * PLM_PI * (circle + 0.5) / run->options->circles;
-        const double azimuth = 2 * PLM_PI * (place + 0.5 * (circle % 2)) / run->options->around;
-        light_source *source = &run->source[k];
-        source->up[0] = cos(elevation) * cos(azimuth);
-        source->up[1] = cos(elevation) * sin(azimuth);
-        source->up[2] = sin(elevation);
-        plm_frame_of_axis(source->up, source->u, source->v);
-    }
-}
-
-/* Start of a ray: on the disc across the source's direction that covers the sphere. */
-static void start_ray(const light_run *run, int number, const double draw[2], double origin[3], double direction[3])
-{
-    const light_source *source = &run->source[number];
-    const double r = run->radius * sqrt(draw[0]), a = 2 * PLM_PI * draw[1], x = r * cos(a), y = r * sin(a);
-    for (int i = 0; i < 3; i++) {
-        direction[i] = -source->up[i];
-        origin[i] = run->centre[i] + 1.01 * run->radius * source->up[i] + x * source->u[i] + y * source->v[i];
-    }
-}
-
-/* A direction about a unit normal with density cosine / pi. */
-static void scatter(const double normal[3], double first, double second, double direction[3])
-{
-    double u[3], v[3];
-    const double r = sqrt(first), a = 2 * PLM_PI * second, up = sqrt(fmax(1 - first, 0));
-    plm_frame_of_axis(normal, u, v);
-    for (int i = 0; i < 3; i++) direction[i] = r * cos(a) * u[i] + r * sin(a) * v[i] + up * normal[i];
-}
-
-/* Leaves the absorbed share of the ray's energy on the face; gives the rest. band holds the shares of the bands in the energy. */
-static uint64_t absorb(const light_run *run, uint64_t energy, const double band[PLM_LIGHT_BANDS], uint64_t *face)
-{
-    double share = 0;
-    for (int b = 0; b < PLM_LIGHT_BANDS; b++) share += band[b] * run->absorptance[b];
-    uint64_t left = (uint64_t)(share * (double)energy + 0.5);
-    left = left > energy ? energy : left;
-    *face += left;
-    return energy - left;
-}
-
-/* Reflected or transmitted; the bands' shares follow. True when reflected. */
-static bool choose_side(const light_run *run, double draw, double band[PLM_LIGHT_BANDS])
-{
-    double reflected = 0, transmitted = 0, sum = 0;
-    for (int b = 0; b < PLM_LIGHT_BANDS; b++) {
-        reflected += band[b] * run->options->reflectance[b];
-        transmitted += band[b] * run->options->transmittance[b];
-    }
-    const bool is_reflected = draw * (reflected + transmitted) < reflected;
-    const double *share = is_reflected ? run->options->reflectance : run->options->transmittance;
-    for (int b = 0; b < PLM_LIGHT_BANDS; b++) sum += band[b] *= share[b];
-    for (int b = 0; b < PLM_LIGHT_BANDS; b++) band[b] /= sum;
-    return is_reflected;
-}
-
-static void follow(const light_run *run, uint64_t key, uint64_t number, int source, tally *count)
-{
-    double draw[5], origin[3], direction[3], band[PLM_LIGHT_BANDS] = {1.0 / 3, 1.0 / 3, 1.0 / 3};
-    uint64_t energy = PARCEL;
-    uint64_t later = 0; /* the stream of the second scattering and those after it: few rays get there */
-    spread(run->source[source].shift, number, draw);
-    start_ray(run, source, draw, origin, direction);
-    for (int depth = 0; depth < run->options->depth && energy; depth++) {
-        plm_hit hit;
-        count->rays++;
-        if (!plm_rays_first(run->rays, origin, direction, 0, INFINITY, &hit)) break;
-        energy = absorb(run, energy, band, &count->face[hit.face]);
-        if (!energy) break;
-        if (depth == 1) later = plm_key(key, 1000003 + number * 131072 + (uint64_t)source);
-        for (int i = 0; depth && i < 3; i++) draw[2 + i] = plm_uniform_at(later, (uint64_t)(3 * depth + i));
-        const double *n = run->normal[hit.face];
-        const bool is_front = plm_dot(n, direction) < 0;
-        /* reflected to the side it came from, transmitted to the other */
-        const double sign = choose_side(run, draw[2], band) == is_front ? 1 : -1;
-        const double side[3] = {sign * n[0], sign * n[1], sign * n[2]};
-        for (int i = 0; i < 3; i++) origin[i] += hit.t * direction[i] + run->gap * side[i];
-        scatter(side, draw[3], draw[4], direction);
-    }
-    count->escaped += energy;
-}
-
 /* ---- The run ---------------------------------------------------------------------------------------------------- */
 
 static plm_status check(const plm_mesh *mesh, const plm_light_options *options, plm_error *error)
@@ -166,6 +35,8 @@ static plm_status check(const plm_mesh *mesh, const plm_light_options *options, 
         return plm_fail(error, PLM_E_ARGUMENT, "depth %d; 1 to %d was expected", options->depth, MAXIMUM_DEPTH);
     if (!(options->power >= 0 && isfinite(options->power)))
         return plm_fail(error, PLM_E_ARGUMENT, "a power of %g W", options->power);
+    if (!(options->irradiance >= 0 && isfinite(options->irradiance)))
+        return plm_fail(error, PLM_E_ARGUMENT, "an irradiance of %g W/m2", options->irradiance);
     if (options->rays < 1 || options->rays > 1000000000u)
         return plm_fail(error, PLM_E_ARGUMENT, "%llu rays; 1 to 1e9 was expected", (unsigned long long)options->rays);
     for (int b = 0; b < PLM_LIGHT_BANDS; b++) {
@@ -190,7 +61,7 @@ static void normals(const plm_mesh *mesh, double (*normal)[3])
 }
 
 /* The sphere that the sources light: the caller's, or the one about the mesh's bounding box. */
-static void place_sphere(light_run *run)
+static void place_sphere(plm_light_run *run)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, half[3];
     for (size_t k = 0; k < run->mesh->vertex_count; k++)
@@ -209,26 +80,29 @@ static void place_sphere(light_run *run)
     run->radius = run->options->radius;
 }
 
-/* Rays [part's share] of every source; thread t counts into count[t]. */
-static void trace_part(light_run *run, int part, tally *count, int threads)
+/* The part's rays of every source. Who counts which batch is left to chance: sums of whole numbers come out the same. */
+static void trace_part(plm_light_run *run, int part, const uint16_t place[PLM_LIGHT_CELLS][PLM_LIGHT_CELLS],
+                       plm_ray_batch *batch, plm_light_tally *count)
 {
-    const int sources = run->options->circles * run->options->around;
+    const uint64_t sources = (uint64_t)(run->options->circles * run->options->around), rays = run->options->rays;
     const uint64_t key = plm_key(run->options->seed, 500 + (uint64_t)part);
-    const uint64_t jobs = run->options->rays;
-    draw_shifts(run, key);
-    const uint64_t first = jobs * (uint64_t)part / PARTS, last = jobs * ((uint64_t)part + 1) / PARTS;
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++) {
-        const uint64_t begin = first + (last - first) * (uint64_t)t / (uint64_t)threads;
-        const uint64_t end = first + (last - first) * ((uint64_t)t + 1) / (uint64_t)threads;
-        for (uint64_t k = begin; k < end; k++)
-            follow(run, key, (k - first) / (uint64_t)sources, (int)((k - first) % (uint64_t)sources), &count[t]);
+    const uint64_t here = rays * ((uint64_t)part + 1) / PARTS - rays * (uint64_t)part / PARTS;
+    const uint64_t batches =
+        (here + sources * PLM_RAY_BATCH - 1) / (sources * PLM_RAY_BATCH); /* of the source with most rays */
+    plm_light_shift(run, key);
+#pragma omp parallel for schedule(dynamic)
+    for (uint64_t job = 0; job < sources * batches; job++) {
+        const uint64_t source = job / batches, all = (here + sources - 1 - source) / sources;
+        const uint64_t first = all * (job % batches) / batches, last = all * (job % batches + 1) / batches;
+        const int thread = omp_get_thread_num();
+        plm_light_start(run, (int)source, first, (size_t)(last - first), place, &batch[thread]);
+        plm_light_follow(run, key, &batch[thread], &count[thread]);
     }
 }
 
 /* Sums of the groups over all threads, in units of energy; part sums are differences of these. */
-static void group_sums(const tally *count, int threads, size_t faces, const int32_t *face_group, uint64_t *sum,
-                       size_t group_count, uint64_t *all)
+static void group_sums(const plm_light_tally *count, int threads, size_t faces, const int32_t *face_group,
+                       uint64_t *sum, size_t group_count, uint64_t *all)
 {
     memset(sum, 0, group_count * sizeof *sum);
     *all = 0;
@@ -259,57 +133,82 @@ static double std_error(const part_statistics *statistics)
     return sqrt(PARTS * statistics->squares / (PARTS - 1));
 }
 
-static plm_status trace_all(light_run *run, const int32_t *face_group, size_t group_count, plm_light *light,
-                            plm_error *error)
+/* What the threads have counted, in watts. */
+static void collect(const plm_light_run *run, const plm_light_tally *count, int threads, plm_light *light)
 {
-    const size_t faces = run->mesh->triangle_count;
-    const double unit = run->options->power / ((double)run->options->rays * (double)PARCEL);
-    enum { THREADS = 16 }; /* of counting, not of running: no sum depends on it */
-    tally count[THREADS] = {{0}};
-    part_statistics whole = {0}, *groups = plm_alloc_zero(group_count, sizeof *groups, error);
-    uint64_t *sum = plm_alloc(group_count, sizeof *sum, error), all = 0;
-    plm_status status = groups && sum ? PLM_OK : PLM_E_MEMORY;
-    const int threads = faces < 2000000 ? THREADS : 2;
-    for (int t = 0; t < threads && status == PLM_OK; t++) {
-        count[t].face = plm_alloc_zero(faces, sizeof *count[t].face, error);
-        if (!count[t].face) status = PLM_E_MEMORY;
+    uint64_t escaped = 0, absorbed = 0;
+    const double power = run->options->irradiance > 0 ? run->options->irradiance * PLM_PI * run->radius * run->radius
+                                                      : run->options->power;
+    const double unit = power / ((double)run->options->rays * (double)PLM_PARCEL);
+    for (size_t f = 0; f < light->face_count; f++) {
+        uint64_t energy = 0;
+        for (int t = 0; t < threads; t++) energy += count[t].face[f];
+        light->face_power[f] = (double)energy * unit;
+        absorbed += energy;
     }
-    for (int part = 0; part < PARTS && status == PLM_OK; part++) {
-        trace_part(run, part, count, threads);
-        group_sums(count, threads, faces, face_group, sum, group_count, &all);
+    for (int t = 0; t < threads; t++) {
+        escaped += count[t].escaped;
+        light->ray_count += count[t].rays;
+    }
+    light->emitted = power;
+    light->absorbed = (double)absorbed * unit;
+    light->escaped = (double)escaped * unit;
+    light->absorbed_std_error *= unit;
+    for (size_t g = 0; g < light->group_count; g++) {
+        light->group_power[g] *= unit;
+        light->group_std_error[g] *= unit;
+    }
+}
+
+/* All parts, one after the other; sums of groups and their errors come in units of energy. */
+static plm_status trace_parts(plm_light_run *run, const int32_t *face_group, plm_ray_batch *batch,
+                              plm_light_tally *count, int threads, plm_light *light, plm_error *error)
+{
+    uint16_t place[PLM_LIGHT_CELLS][PLM_LIGHT_CELLS];
+    part_statistics whole = {0}, *groups = plm_alloc_zero(light->group_count, sizeof *groups, error);
+    uint64_t *sum = plm_alloc(light->group_count, sizeof *sum, error), all = 0;
+    const bool has_room = groups && sum;
+    for (uint32_t row = 0; row < PLM_LIGHT_CELLS; row++)
+        for (uint32_t column = 0; column < PLM_LIGHT_CELLS; column++)
+            place[row][column] = (uint16_t)plm_curve_place(column, row);
+    for (int part = 0; part < PARTS && has_room; part++) {
+        trace_part(run, part, (const uint16_t(*)[PLM_LIGHT_CELLS])place, batch, count);
+        group_sums(count, threads, light->face_count, face_group, sum, light->group_count, &all);
         add_part(&whole, part, all);
-        for (size_t g = 0; g < group_count; g++) add_part(&groups[g], part, sum[g]);
+        for (size_t g = 0; g < light->group_count; g++) add_part(&groups[g], part, sum[g]);
     }
-    if (status == PLM_OK) {
-        uint64_t escaped = 0;
-        for (size_t f = 0; f < faces; f++) {
-            uint64_t energy = 0;
-            for (int t = 0; t < threads; t++) energy += count[t].face[f];
-            light->face_power[f] = (double)energy * unit;
-        }
-        for (int t = 0; t < threads; t++) {
-            escaped += count[t].escaped;
-            light->ray_count += count[t].rays;
-        }
-        for (size_t g = 0; g < group_count; g++) {
-            light->group_power[g] = (double)sum[g] * unit;
-            light->group_std_error[g] = std_error(&groups[g]) * unit;
-        }
-        light->emitted = run->options->power;
-        light->absorbed = (double)all * unit;
-        light->absorbed_std_error = std_error(&whole) * unit;
-        light->escaped = (double)escaped * unit;
+    for (size_t g = 0; has_room && g < light->group_count; g++) {
+        light->group_power[g] = (double)sum[g];
+        light->group_std_error[g] = std_error(&groups[g]);
     }
-    for (int t = 0; t < threads; t++) plm_free(count[t].face);
+    light->absorbed_std_error = std_error(&whole);
     plm_free(groups);
     plm_free(sum);
+    return has_room ? PLM_OK : PLM_E_MEMORY;
+}
+
+static plm_status trace_all(plm_light_run *run, const int32_t *face_group, plm_light *light, plm_error *error)
+{
+    const int threads = omp_get_max_threads();
+    plm_light_tally *count = plm_alloc_zero((size_t)threads, sizeof *count, error);
+    plm_ray_batch *batch = plm_alloc((size_t)threads, sizeof *batch, error);
+    plm_status status = count && batch ? PLM_OK : PLM_E_MEMORY;
+    for (int t = 0; t < threads && status == PLM_OK; t++) {
+        count[t].face = plm_alloc_zero(light->face_count, sizeof *count[t].face, error);
+        if (!count[t].face) status = PLM_E_MEMORY;
+    }
+    if (status == PLM_OK) status = trace_parts(run, face_group, batch, count, threads, light, error);
+    if (status == PLM_OK) collect(run, count, threads, light);
+    for (int t = 0; count && t < threads; t++) plm_free(count[t].face);
+    plm_free(count);
+    plm_free(batch);
     return status;
 }
 
 plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_group, size_t group_count,
                            const plm_light_options *options, plm_light *light, plm_error *error)
 {
-    light_run run = {.mesh = mesh, .options = options};
+    plm_light_run run = {.mesh = mesh, .options = options};
     plm_rays *rays = NULL;
     plm_light made = {.face_count = mesh->triangle_count, .group_count = group_count};
     plm_status status = check(mesh, options, error);
@@ -329,9 +228,9 @@ plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_group, size
     if (status == PLM_OK) {
         normals(mesh, run.normal);
         place_sphere(&run);
-        place_sources(&run);
+        plm_light_place_sources(&run);
         run.rays = rays;
-        status = trace_all(&run, face_group, group_count, &made, error);
+        status = trace_all(&run, face_group, &made, error);
     }
     if (status == PLM_OK)
         *light = made;

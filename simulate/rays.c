@@ -93,6 +93,51 @@ bool plm_rays_first(const plm_rays *rays, const double origin[3], const double d
     return true;
 }
 
+enum { PACKET = 8 };
+
+static void load_packet(const double (*origin)[3], const double (*direction)[3], size_t count, int *valid,
+                        struct RTCRayHit8 *packet)
+{
+    for (size_t k = 0; k < PACKET; k++) {
+        const size_t from = k < count ? k : 0; /* lanes that are not valid hold numbers all the same */
+        valid[k] = k < count ? -1 : 0;
+        packet->ray.org_x[k] = (float)origin[from][0];
+        packet->ray.org_y[k] = (float)origin[from][1];
+        packet->ray.org_z[k] = (float)origin[from][2];
+        packet->ray.tnear[k] = 0;
+        packet->ray.dir_x[k] = (float)direction[from][0];
+        packet->ray.dir_y[k] = (float)direction[from][1];
+        packet->ray.dir_z[k] = (float)direction[from][2];
+        packet->ray.time[k] = 0;
+        packet->ray.tfar[k] = INFINITY;
+        packet->ray.mask[k] = ~0u;
+        packet->ray.id[k] = 0;
+        packet->ray.flags[k] = 0;
+        packet->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        packet->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+void plm_rays_first_many(const plm_rays *rays, const double (*origin)[3], const double (*direction)[3], size_t count,
+                         plm_hit *hit)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (size_t first = 0; first < count; first += PACKET) {
+        const size_t here = count - first < PACKET ? count - first : PACKET;
+        struct RTCRayHit8 packet;
+        int valid[PACKET] __attribute__((aligned(32)));
+        load_packet(origin + first, direction + first, here, valid, &packet);
+        rtcIntersect8(valid, rays->scene, &context, &packet);
+        for (size_t k = 0; k < here; k++)
+            hit[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
+                                 ? (plm_hit){.face = PLM_NO_HIT}
+                                 : (plm_hit){packet.hit.primID[k], (double)packet.ray.tfar[k], (double)packet.hit.u[k],
+                                             (double)packet.hit.v[k]};
+    }
+}
+
 bool plm_rays_blocked(const plm_rays *rays, const double from[3], const double to[3])
 {
     const double direction[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};

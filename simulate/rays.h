@@ -28,6 +28,13 @@ void plm_rays_free(plm_rays *rays);
 bool plm_rays_first(const plm_rays *rays, const double origin[3], const double direction[3], double near, double far,
                     plm_hit *hit);
 
+#define PLM_NO_HIT UINT32_MAX
+
+/** The same for many rays at once: hit[k].face is PLM_NO_HIT where ray k meets nothing. Rays that lie side by side in the arrays
+ * should run side by side: eight go through the tree together. */
+void plm_rays_first_many(const plm_rays *rays, const double (*origin)[3], const double (*direction)[3], size_t count,
+                         plm_hit *hit);
+
 /** True when a face lies between the two points (share 0.001 of the way kept off both ends). */
 bool plm_rays_blocked(const plm_rays *rays, const double from[3], const double to[3]);
 

@@ -194,9 +194,12 @@ enum { PLM_LIGHT_BANDS = 3 };
 /** Options of a light run. Fill with plm_light_defaults first. */
 typedef struct plm_light_options {
     uint64_t seed;
-    uint64_t rays;                         /**< sent out by the sources together */
-    int circles, around;                   /**< sources: so many circles of so many directions on the sky */
-    double power;                          /**< of all sources, W; a third in each band (red, green, blue) */
+    uint64_t rays;       /**< sent out by the sources together */
+    int circles, around; /**< sources: so many circles of so many directions on the sky */
+    double power;        /**< of all sources, W; a third in each band (red, green, blue) */
+    double
+        irradiance; /**< W/m2 that all sources together bring, each across its own direction; 0: power holds. Else power is
+                            irradiance x the sphere's disc, and what is absorbed does not depend on the sphere */
     double reflectance[PLM_LIGHT_BANDS];   /**< diffuse, of both sides of a face */
     double transmittance[PLM_LIGHT_BANDS]; /**< diffuse; what is neither reflected nor transmitted is absorbed */
     int depth;                             /**< hits of one ray at most; what travels on then counts as escaped */
@@ -228,6 +231,25 @@ PLM_API plm_status plm_light_trace(const plm_mesh *mesh, const int32_t *face_gro
                                    const plm_light_options *options, plm_light *light, plm_error *error);
 
 PLM_API void plm_light_free(plm_light *light);
+
+/** Faces of one organ. */
+typedef struct plm_light_group {
+    int label; /**< plm_label, or -1 where the mesh has no labels */
+    int32_t organ;
+    size_t face_count;
+    double area; /**< one-sided */
+} plm_light_group;
+
+/** Sorts the faces of a mesh into organs by face_label (may be NULL) and mesh->face_organ: stems, petioles, leaves and then the
+ * rest, each by number. face_group (one a triangle) is filled in; -1 for faces of no organ. group is the caller's (plm_free);
+ * count 0 where the mesh names no organs. PLM_E_MEMORY. */
+PLM_API plm_status plm_light_groups(const plm_mesh *mesh, const uint8_t *face_label, int32_t *face_group,
+                                    plm_light_group **group, size_t *count, plm_error *error);
+
+/** Writes a mesh as binary PLY with each face's absorbed power (`absorbed_w`), that per area (`absorbed_w_m2`), a colour from
+ * dark to light by the latter, and label and organ where they are known. Vertices are origin + offset. */
+PLM_API plm_status plm_light_write(const char *path, const plm_mesh *mesh, const uint8_t *face_label,
+                                   const plm_light *light, plm_error *error);
 
 /* ---- Loss of geometry -------------------------------------------------------------------------------------------- */
 

@@ -4,29 +4,12 @@
 #include <string.h>
 
 #include "io/io.h"
+#include "simulate/packed.h"
 #include "simulate/simulate.h"
-
-/* A packed row that is being filled. */
-typedef struct packed {
-    unsigned char bytes[128];
-    size_t used;
-} packed;
-
-static void pack(packed *row, const void *value, size_t size)
-{
-    memcpy(row->bytes + row->used, value, size);
-    row->used += size;
-}
-
-static const char *byte_order(void)
-{
-    const uint16_t one = 1;
-    return *(const uint8_t *)&one == 1 ? "little" : "big";
-}
 
 static plm_status start(plm_output *output, bool is_labelled, plm_error *error)
 {
-    plm_status status = plm_output_print(output, error, "ply\nformat binary_%s_endian 1.0\n", byte_order());
+    plm_status status = plm_output_print(output, error, "ply\nformat binary_%s_endian 1.0\n", plm_byte_order());
     if (status == PLM_OK && is_labelled)
         status = plm_output_print(output, error,
                                   "comment label 0 other, 1 stem, 2 petiole, 3 leaf, 4 ground\n"
@@ -59,30 +42,30 @@ static plm_status scan_header(plm_output *output, const plm_scan *scan, bool is_
     return status;
 }
 
-static void pack_gaussian(packed *row, const plm_scan *scan, size_t k)
+static void pack_gaussian(plm_packed *row, const plm_scan *scan, size_t k)
 {
     const float none[3] = {0, 0, 0}; /* splat files carry normals, and leave them zero */
-    pack(row, none, sizeof none);
+    plm_pack(row, none, sizeof none);
     for (int i = 0; i < 3; i++) { /* the constant spherical harmonic is 1 / (2 sqrt(pi)) */
         const float dc = (float)((scan->cloud.rgb[k][i] / 255.0 - 0.5) / 0.28209479177387814);
-        pack(row, &dc, sizeof dc);
+        plm_pack(row, &dc, sizeof dc);
     }
-    pack(row, &scan->splat.logit_opacity[k], sizeof(float));
-    pack(row, scan->splat.log_scale[k], sizeof scan->splat.log_scale[k]);
-    pack(row, scan->splat.rotation[k], sizeof scan->splat.rotation[k]);
+    plm_pack(row, &scan->splat.logit_opacity[k], sizeof(float));
+    plm_pack(row, scan->splat.log_scale[k], sizeof scan->splat.log_scale[k]);
+    plm_pack(row, scan->splat.rotation[k], sizeof scan->splat.rotation[k]);
 }
 
-static void pack_point(packed *row, const plm_scan *scan, bool is_labelled, size_t k)
+static void pack_point(plm_packed *row, const plm_scan *scan, bool is_labelled, size_t k)
 {
-    pack(row, scan->cloud.xyz[k], sizeof scan->cloud.xyz[k]);
+    plm_pack(row, scan->cloud.xyz[k], sizeof scan->cloud.xyz[k]);
     if (scan->splat.rotation)
         pack_gaussian(row, scan, k);
     else
-        pack(row, scan->cloud.rgb[k], sizeof scan->cloud.rgb[k]);
+        plm_pack(row, scan->cloud.rgb[k], sizeof scan->cloud.rgb[k]);
     if (!is_labelled) return;
-    pack(row, &scan->cloud.label[k], 1);
-    pack(row, &scan->cloud.organ[k], sizeof(int32_t));
-    if (scan->leaflet) pack(row, &scan->leaflet[k], sizeof(int32_t));
+    plm_pack(row, &scan->cloud.label[k], 1);
+    plm_pack(row, &scan->cloud.organ[k], sizeof(int32_t));
+    if (scan->leaflet) plm_pack(row, &scan->leaflet[k], sizeof(int32_t));
 }
 
 plm_status plm_scan_write(const char *path, const plm_scan *scan, bool is_labelled, plm_error *error)
@@ -92,7 +75,7 @@ plm_status plm_scan_write(const char *path, const plm_scan *scan, bool is_labell
     if (status != PLM_OK) return status;
     status = scan_header(output, scan, is_labelled, error);
     for (size_t k = 0; k < scan->cloud.count && status == PLM_OK; k++) {
-        packed row = {.used = 0};
+        plm_packed row = {.used = 0};
         pack_point(&row, scan, is_labelled, k);
         status = plm_output_write(output, row.bytes, row.used, error);
     }
@@ -116,12 +99,12 @@ static plm_status write_mesh(plm_output *output, const plm_virtual_plant *plant,
         status = plm_output_write(output, mesh->vertex[k], sizeof mesh->vertex[k], error);
     for (size_t k = 0; k < mesh->triangle_count && status == PLM_OK; k++) {
         const uint8_t corners = 3;
-        packed row = {.used = 0};
-        pack(&row, &corners, 1);
-        pack(&row, mesh->triangle[k], sizeof mesh->triangle[k]);
-        pack(&row, &plant->face_label[k], 1);
-        pack(&row, &mesh->face_organ[k], sizeof(int32_t));
-        pack(&row, &plant->face_leaflet[k], sizeof(int32_t));
+        plm_packed row = {.used = 0};
+        plm_pack(&row, &corners, 1);
+        plm_pack(&row, mesh->triangle[k], sizeof mesh->triangle[k]);
+        plm_pack(&row, &plant->face_label[k], 1);
+        plm_pack(&row, &mesh->face_organ[k], sizeof(int32_t));
+        plm_pack(&row, &plant->face_leaflet[k], sizeof(int32_t));
         status = plm_output_write(output, row.bytes, row.used, error);
     }
     return status;

@@ -1,14 +1,13 @@
 /* tool/agreement_run.c: runs a comparison of two tables and tells what came of it. */
 #include "tool/agreement_run.h"
 
+#include "io/io.h"
 #include "reports/plots.h"
 #include "reports/validation.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static void print_table(const plm_validation *v)
 {
@@ -87,8 +86,7 @@ int agreement_run(const agreement_settings *settings, const char *estimates, con
         return PLM_EXIT_INPUT;
     }
     int exit_code = PLM_EXIT_GOOD;
-    if (mkdir(settings->output, 0777) != 0 && errno != EEXIST)
-        status = plm_fail(&error, PLM_E_WRITE, "%s: %s", settings->output, strerror(errno));
+    status = plm_folder_make(settings->output, &error);
     if (status == PLM_OK) status = plm_validation_write(&validation, settings->output, &error);
     if (status == PLM_OK && settings->plots) status = draw(&validation, settings->output, &error);
     if (status != PLM_OK) {

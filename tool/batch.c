@@ -2,10 +2,10 @@
  * names is in the tables. */
 #include "tool/batch.h"
 
+#include "io/io.h"
 #include "reports/run_json.h"
 #include "tool/command.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -87,26 +87,6 @@ static bool exists(const char *path)
 {
     struct stat found;
     return stat(path, &found) == 0;
-}
-
-/* Makes a folder and those above it. */
-static plm_status make_folder(const char *folder, plm_error *error)
-{
-    char path[LONGEST_PATH];
-    if (snprintf(path, sizeof path, "%s", folder) >= (int)sizeof path)
-        return plm_fail(error, PLM_E_WRITE, "%.60s...: the path is too long", folder);
-    for (char *at = path + 1;; at++) {
-        if (*at && *at != '/') continue;
-        const char behind = *at;
-        *at = 0;
-        if (mkdir(path, 0777) != 0 && errno != EEXIST)
-            return plm_fail(error, PLM_E_WRITE, "%s: the folder cannot be made: %s", path, strerror(errno));
-        *at = behind;
-        if (!behind) break;
-    }
-    struct stat found;
-    if (stat(folder, &found) == 0 && S_ISDIR(found.st_mode)) return PLM_OK;
-    return plm_fail(error, PLM_E_WRITE, "%s: is no folder", folder);
 }
 
 /* ---- What the folder holds ---------------------------------------------------------------------------------------- */
@@ -191,7 +171,7 @@ plm_status batch_open(batch *made, const char *folder, json_t *options, bool for
 {
     batch open = {.folder = folder, .options = options, .saved_at = seconds_now()};
     plm_status status = name_plants(&open, input, input_count, error);
-    if (status == PLM_OK && folder) status = make_folder(folder, error);
+    if (status == PLM_OK && folder) status = plm_folder_make(folder, error);
     if (status == PLM_OK && folder && !force) status = read_folder(&open, error);
     if (status == PLM_OK && folder && force) read_folder_leniently(&open);
     if (status == PLM_OK)

@@ -4,11 +4,8 @@
 #include "simulate/simulate.h"
 #include "tool/command.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 typedef enum cloud_format { FORMAT_PLY = 0, FORMAT_3DGS, FORMAT_PCD, FORMAT_XYZ, FORMAT_CSV } cloud_format;
 
@@ -301,10 +298,9 @@ static int run(int argc, char **argv)
     if (!settings.output) return plm_usage_error(&plm_command_simulate, "--output is missing");
     if (settings.format == FORMAT_3DGS && settings.scanner != PLM_SCANNER_SPLAT)
         return plm_usage_error(&plm_command_simulate, "--format 3dgs needs --scanner splat");
-    if (mkdir(settings.output, 0777) != 0 && errno != EEXIST) {
-        fprintf(stderr, "plantimeter: %s: %s\n", settings.output, strerror(errno));
-        return PLM_EXIT_OUTPUT;
-    }
+    plm_error error = {0};
+    const plm_status made = plm_folder_make(settings.output, &error);
+    if (made != PLM_OK) return plm_report_failure(made, &error);
     return simulate_all(&settings, argc, argv);
 }
 

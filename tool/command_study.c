@@ -5,10 +5,8 @@
 #include "tool/command.h"
 #include "tool/study.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -213,12 +211,12 @@ static int study_thinning(study *all, const study_settings *settings)
     return PLM_EXIT_GOOD;
 }
 
-static bool make_folders(const char *folder)
+/* The folder and that of the steps. */
+static plm_status make_folders(const study *all, plm_error *error)
 {
     char steps[STUDY_PATH];
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) return false;
-    if (snprintf(steps, sizeof steps, "%s/steps", folder) >= (int)sizeof steps) return false;
-    return mkdir(steps, 0777) == 0 || errno == EEXIST;
+    const plm_status status = study_path(all, "steps", steps, error);
+    return status == PLM_OK ? plm_folder_make(steps, error) : status;
 }
 
 static int run(int argc, char **argv)
@@ -241,10 +239,9 @@ static int run(int argc, char **argv)
     else if (!mark_names(settings.scenarios, scenario_name, all->has_loss))
         result =
             plm_usage_error(&plm_command_study, "--scenarios: \"%s\" names an unknown scenario", settings.scenarios);
-    else if (!make_folders(settings.output)) {
-        fprintf(stderr, "plantimeter: %s: %s\n", settings.output, strerror(errno));
-        result = PLM_EXIT_OUTPUT;
-    } else
+    else if (make_folders(all, &error) != PLM_OK)
+        result = plm_report_failure(error.status, &error);
+    else
         result = study_thinning(all, &settings);
     plm_free(all);
     return result;

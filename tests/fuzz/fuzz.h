@@ -3,6 +3,7 @@
  * | function        | target        |
  * |-----------------|---------------|
  * | PLY reader      | fuzz_ply.c    |
+ * | mesh readers    | fuzz_mesh.c   |
  * | PCD reader, LZF | fuzz_pcd.c    |
  * | LAS reader      | fuzz_las.c    |
  * | text reader     | fuzz_text.c   |
