@@ -91,40 +91,6 @@ static float spacing_at(const float (*xyz)[3], uint32_t self, const uint32_t *ne
     return (float)sqrt(PLM_PI * largest / ((double)count - 0.5));
 }
 
-static size_t known_neighbours(const uint32_t *row, size_t room)
-{
-    size_t count = 0;
-    while (count < room && row[count] != PLM_NO_ROW) count++;
-    return count;
-}
-
-plm_status plm_spacing_local(const plm_index *index, const float (*xyz)[3], size_t count, float *spacing,
-                             plm_error *error)
-{
-    enum { K = SPACING_NEIGHBOURS };
-    if (count < 2) return plm_fail(error, PLM_E_DEGENERATE, "%zu points have no spacing; at least 2 are needed", count);
-    plm_status status = PLM_E_MEMORY;
-    uint32_t *row = plm_alloc(count, K * sizeof *row, error);
-    float *raw = plm_alloc(count, sizeof *raw, error);
-    if (row && raw) status = plm_index_table(index, K, row, NULL, error);
-    if (status == PLM_OK) {
-#pragma omp parallel for schedule(static)
-        for (size_t i = 0; i < count; i++)
-            raw[i] = spacing_at(xyz, (uint32_t)i, row + i * K, known_neighbours(row + i * K, K));
-#pragma omp parallel for schedule(static)
-        for (size_t i = 0; i < count; i++) {
-            float near[K + 1];
-            const size_t known = known_neighbours(row + i * K, K);
-            for (size_t j = 0; j < known; j++) near[j] = raw[row[i * K + j]];
-            near[known] = raw[i];
-            spacing[i] = median_of(near, known + 1);
-        }
-    }
-    plm_free(row);
-    plm_free(raw);
-    return status;
-}
-
 /* Mixes the bits of a point's coordinates (the finaliser of MurmurHash3): the order of the sample. */
 static uint64_t hash_point(const float point[3])
 {
@@ -154,23 +120,62 @@ size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint3
     return taken;
 }
 
+/* The nearest rows of a point but itself, at most SPACING_NEIGHBOURS of them, and their squared distances. */
+static size_t others_near(const plm_index *index, const float (*xyz)[3], uint32_t self,
+                          uint32_t row[SPACING_NEIGHBOURS + 1], float squared[SPACING_NEIGHBOURS + 1])
+{
+    const size_t found = plm_index_nearest(index, xyz[self], SPACING_NEIGHBOURS + 1, row, squared);
+    size_t known = 0;
+    for (size_t j = 0; j < found; j++)
+        if (row[j] != self) row[known] = row[j], squared[known++] = squared[j];
+    /* Where self was not among them, more points than that coincide with it. */
+    return known < SPACING_NEIGHBOURS ? known : SPACING_NEIGHBOURS;
+}
+
+/* Median over a point and its neighbours of the spacing at each. */
+static float smooth_spacing_at(const plm_index *index, const float (*xyz)[3], uint32_t self)
+{
+    uint32_t row[SPACING_NEIGHBOURS + 1], its[SPACING_NEIGHBOURS + 1];
+    float squared[SPACING_NEIGHBOURS + 1], near[SPACING_NEIGHBOURS + 1];
+    const size_t known = others_near(index, xyz, self, row, squared);
+    row[known] = self;
+    for (size_t j = 0; j <= known; j++)
+        near[j] = spacing_at(xyz, row[j], its, others_near(index, xyz, row[j], its, squared));
+    return median_of(near, known + 1);
+}
+
+plm_status plm_spacing_quantile(const plm_index *index, const float (*xyz)[3], size_t count, double share,
+                                double *spacing, plm_error *error)
+{
+    if (count < 2) return plm_fail(error, PLM_E_DEGENERATE, "%zu points have no spacing; at least 2 are needed", count);
+    uint32_t *sample = plm_alloc(count, sizeof *sample, error);
+    if (!sample) return PLM_E_MEMORY;
+    const size_t taken = plm_sample_rows(xyz, count, SAMPLE_SPACING, sample);
+    float *local = plm_alloc(taken, sizeof *local, error);
+    const plm_status status = local ? PLM_OK : PLM_E_MEMORY;
+    if (local) {
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < taken; i++) local[i] = smooth_spacing_at(index, xyz, sample[i]);
+        qsort(local, taken, sizeof *local, compare_floats);
+        *spacing = local[(size_t)fmin(share * (double)taken, (double)taken - 1)];
+    }
+    plm_free(local);
+    plm_free(sample);
+    return status;
+}
+
 /* Finds the median spacing and the share of points with a neighbour far nearer than the sheet's spacing. */
 static plm_status measure_spacing(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
                                   double *spacing, double *share, plm_error *error)
 {
-    enum { K = SPACING_NEIGHBOURS };
     float *local = plm_alloc(count, sizeof *local, error);
     if (!local) return PLM_E_MEMORY;
     size_t close = 0;
 #pragma omp parallel for schedule(static) reduction(+ : close)
     for (size_t i = 0; i < count; i++) {
-        uint32_t row[K + 1];
-        float squared[K + 1];
-        const size_t found = plm_index_nearest(index, xyz[sample[i]], K + 1, row, squared);
-        size_t known = 0;
-        for (size_t j = 0; j < found; j++)
-            if (row[j] != sample[i]) row[known] = row[j], squared[known++] = squared[j];
-        if (known > K) known = K; /* self was not among them: more than K coincident points */
+        uint32_t row[SPACING_NEIGHBOURS + 1];
+        float squared[SPACING_NEIGHBOURS + 1];
+        const size_t known = others_near(index, xyz, sample[i], row, squared);
         local[i] = spacing_at(xyz, sample[i], row, known);
         close += plm_neighbour_is_close(squared, known);
     }

@@ -15,11 +15,12 @@ typedef struct plm_sampling {
     bool fused;     /**< points are voxel means (they keep apart) */
 } plm_sampling;
 
-/** Spacing at each of count points (out, count long): 1 / sqrt of the local density in the tangent plane, from the k =
- * 8 nearest neighbours, then the median over these neighbours. Both faces of a thin leaf count, and should. 0 where
- * nine points coincide. index is over xyz. PLM_E_DEGENERATE below 2 points. Parallel. */
-plm_status plm_spacing_local(const plm_index *index, const float (*xyz)[3], size_t count, float *spacing,
-                             plm_error *error);
+/** The spacing that a share of count points stay below (0.9: that of the sparser parts): at each of some 6000 points,
+ * chosen by their coordinates, 1 / sqrt of the local density in the tangent plane from the k = 8 nearest neighbours, the
+ * median of that over these neighbours, and then the quantile. Both faces of a thin leaf count, and should. index is over
+ * xyz. PLM_E_DEGENERATE below 2 points. Parallel. */
+plm_status plm_spacing_quantile(const plm_index *index, const float (*xyz)[3], size_t count, double share,
+                                double *spacing, plm_error *error);
 
 /** Sampling of count points that belong together (one organ, or the plant). fused_known: NULL to find it out here, else
  * the answer of the whole cloud (small organs cannot tell). index is over xyz. Some 6000 points are looked at, chosen

@@ -1,5 +1,4 @@
-/* traits/axis_curve.c: clamped uniform B-splines over a chord (Piegl and Tiller, The NURBS Book, 2nd ed. 1997, algorithms
- * A2.2 and A2.3), and distances along them. */
+/* traits/axis_curve.c: curves over a chord, and distances along them. */
 #include "traits/axis_curve.h"
 
 #include "cloud/linear.h"
@@ -30,75 +29,6 @@ bool plm_curve_line(const double begin[3], const double end[3], int degree, int 
 int plm_curve_basis_count(const plm_curve *curve)
 {
     return curve->degree + curve->spans;
-}
-
-/* Knot i of the clamped uniform vector over [-1, 1]. */
-static double knot(const plm_curve *curve, int i)
-{
-    const int inner = i - curve->degree;
-    if (inner <= 0) return -1;
-    if (inner >= curve->spans) return 1;
-    return -1 + 2.0 * inner / curve->spans;
-}
-
-/* The degree + 1 basis functions of a degree that are not zero in a span (algorithm A2.2). */
-static void functions(const plm_curve *curve, int span, int degree, double t, double value[4])
-{
-    double left[4], right[4];
-    value[0] = 1;
-    for (int j = 1; j <= degree; j++) {
-        left[j] = t - knot(curve, span + 1 - j);
-        right[j] = knot(curve, span + j) - t;
-        double saved = 0;
-        for (int r = 0; r < j; r++) {
-            const double part = value[r] / (right[r + 1] + left[j - r]);
-            value[r] = saved + right[r + 1] * part;
-            saved = left[j - r] * part;
-        }
-        value[j] = saved;
-    }
-}
-
-/* Derivative of a sum of functions of a degree from the functions of degree - 1: N' = p (N_i / (k_i+p - k_i) - ...). */
-static void derive(const plm_curve *curve, int span, int degree, const double lower[4], double out[4])
-{
-    for (int r = 0; r <= degree; r++) {
-        const int i = span - degree + r;
-        double sum = 0;
-        if (r > 0) sum += lower[r - 1] / (knot(curve, i + degree) - knot(curve, i));
-        if (r < degree) sum -= lower[r] / (knot(curve, i + degree + 1) - knot(curve, i + 1));
-        out[r] = degree * sum;
-    }
-}
-
-static void inside(const plm_curve *curve, int span, double t, double value[4], double first[4], double second[4])
-{
-    const int p = curve->degree;
-    functions(curve, span, p, t, value);
-    double lower[4] = {0}, lowest[4] = {0}, slope[4] = {0};
-    functions(curve, span, p - 1, t, lower);
-    derive(curve, span, p, lower, first);
-    if (!second) return;
-    memset(second, 0, 4 * sizeof *second);
-    if (p < 2) return;
-    functions(curve, span, p - 2, t, lowest);
-    derive(curve, span, p - 1, lowest, slope); /* derivatives of the functions of degree p - 1 */
-    derive(curve, span, p, slope, second);
-}
-
-int plm_curve_basis(const plm_curve *curve, double t, double value[4], double first[4], double second[4])
-{
-    const double clamped = t < -1 ? -1 : t > 1 ? 1 : t;
-    int interval = (int)floor(0.5 * (clamped + 1) * curve->spans);
-    if (interval >= curve->spans) interval = curve->spans - 1;
-    memset(value, 0, 4 * sizeof *value);
-    memset(first, 0, 4 * sizeof *first);
-    inside(curve, interval + curve->degree, clamped, value, first, second);
-    if (t != clamped) {
-        for (int k = 0; k <= curve->degree; k++) value[k] += (t - clamped) * first[k];
-        if (second) memset(second, 0, 4 * sizeof *second);
-    }
-    return interval;
 }
 
 void plm_curve_derivatives(const plm_curve *curve, double t, double point[3], double first[3], double second[3])

@@ -3,7 +3,6 @@
 #include "traits/scene.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_CELLS = 1 << 24 };
@@ -78,27 +77,6 @@ static double on_area(const raster *r, double *border)
     return (double)count * r->cell * r->cell;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-/* Spacing of the sparser parts: what gaps must be closed at, as splats are uneven. */
-static plm_status sparse_spacing(const plm_scene *scene, double *spacing, plm_error *error)
-{
-    float *local = plm_alloc(scene->plant_count, sizeof *local, error);
-    if (!local) return PLM_E_MEMORY;
-    const plm_status status =
-        plm_spacing_local(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count, local, error);
-    if (status == PLM_OK) {
-        qsort(local, scene->plant_count, sizeof *local, ascending);
-        *spacing = local[scene->plant_count - scene->plant_count / 10 - 1];
-    }
-    plm_free(local);
-    return status;
-}
-
 /** Area of the silhouette seen from above: points on a raster of half the spacing, gaps closed by a disc of two spacings of the
  * sparser parts. The rim lies a quarter of a spacing inside of the edge without noise (a splat's centres: 0.85 of its
  * scale), and noise pushes it out by about its SD. Condition: border length x spacing over area. */
@@ -107,8 +85,9 @@ plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *org
     (void)organ;
     const double s = scene->sampling.spacing, sigma = scene->sampling.noise;
     if (!(s > 0)) return plm_trait_failed(out, "the points are too few to know their spacing");
-    double sparse = s;
-    plm_status status = sparse_spacing(scene, &sparse, error);
+    double sparse; /* splats are uneven: gaps must be closed at the spacing of the sparser parts */
+    plm_status status = plm_spacing_quantile(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
+                                             0.9, &sparse, error);
     if (status != PLM_OK) return status;
     const double disc = 2 * fmin(sparse, 4 * s), extent = scene->sampling.extent;
     raster r;

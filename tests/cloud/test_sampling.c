@@ -88,27 +88,24 @@ static void spacing_and_noise_are_those_of_the_sheet(void **unused)
     }
 }
 
-static void local_spacing_follows_a_tenfold_gradient(void **unused)
+static void quantiles_of_the_spacing_follow_a_tenfold_gradient(void **unused)
 {
     (void)unused;
     enum { N = 60000 };
     plm_error error;
     float(*xyz)[3] = make_sheet(N, 0.1, 10, 0, 5);
-    float *spacing = malloc(N * sizeof *spacing);
     plm_index *index = NULL;
     assert_ok(plm_index_build((const float(*)[3])xyz, N, &index, &error));
-    assert_ok(plm_spacing_local(index, (const float(*)[3])xyz, N, spacing, &error));
-    double left = 0, right = 0, lefts = 0, rights = 0;
-    for (size_t i = 0; i < N; i++) {
-        if (xyz[i][1] < 0.01f || xyz[i][1] > 0.09f) continue; /* spacing reads high on the rim */
-        if (xyz[i][0] > 0.01f && xyz[i][0] < 0.02f) left += spacing[i], lefts++;
-        if (xyz[i][0] > 0.08f && xyz[i][0] < 0.09f) right += spacing[i], rights++;
-    }
-    /* Density at x is 1 / (1 + 9 x): in the middle of the two bands, then the root. */
-    assert_near((right / rights) / (left / lefts), sqrt(8.65 / 2.35),
-                0.08); /* 2000 points on the right, 250 patches: 1.3 % */
+    double low, high, again;
+    assert_ok(plm_spacing_quantile(index, (const float(*)[3])xyz, N, 0.1, &low, &error));
+    assert_ok(plm_spacing_quantile(index, (const float(*)[3])xyz, N, 0.9, &high, &error));
+    /* Density at x (of 1) is 1 / (1 + 9 x): a share of points lies below x where log(1 + 9 x) is that share of log 10. The
+     * rim reads high, and 9 neighbours scatter. */
+    assert_near(high / low, sqrt(pow(10, 0.9) / pow(10, 0.1)), 0.25);
+    assert_ok(plm_spacing_quantile(index, (const float(*)[3])xyz, N, 1, &again, &error));
+    assert_true(again > high);
+    assert_int_equal(plm_spacing_quantile(index, (const float(*)[3])xyz, 1, 0.5, &again, &error), PLM_E_DEGENERATE);
     plm_index_free(index);
-    free(spacing);
     free(xyz);
 }
 
@@ -169,7 +166,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spacing_and_noise_are_those_of_the_sheet),
-        cmocka_unit_test(local_spacing_follows_a_tenfold_gradient),
+        cmocka_unit_test(quantiles_of_the_spacing_follow_a_tenfold_gradient),
         cmocka_unit_test(voxel_means_are_told_from_scans_and_splats),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
         cmocka_unit_test(odd_input_gives_a_status_or_zero_but_no_nan),

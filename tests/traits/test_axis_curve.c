@@ -14,6 +14,42 @@ static plm_curve bent(int degree, int spans, uint64_t *state)
     return curve;
 }
 
+/* The definition: the recursion of Cox and de Boor on the clamped knots. */
+static double knot(int degree, int spans, int i)
+{
+    return i <= degree ? -1 : i >= degree + spans ? 1 : -1 + 2.0 * (i - degree) / spans;
+}
+
+static double recursion(int degree, int top, int spans, int i, double t)
+{
+    const double low = knot(top, spans, i), next = knot(top, spans, i + 1);
+    if (degree == 0) return low <= t && t < next;
+    const double high = knot(top, spans, i + degree + 1), left = knot(top, spans, i + degree) - low,
+                 right = high - next;
+    double sum = 0;
+    if (left > 0) sum += (t - low) / left * recursion(degree - 1, top, spans, i, t);
+    if (right > 0) sum += (high - t) / right * recursion(degree - 1, top, spans, i + 1, t);
+    return sum;
+}
+
+static void basis_functions_are_those_of_the_recursion(void **unused)
+{
+    (void)unused;
+    uint64_t state = 6;
+    for (int degree = 1; degree <= 3; degree++)
+        for (int spans = 1; spans <= PLM_CURVE_SPANS; spans++) {
+            const plm_curve curve = bent(degree, spans, &state);
+            for (int trial = 0; trial < 60; trial++) {
+                const double t = -1 + 2 * test_uniform(&state);
+                double value[4], first[4], second[4];
+                const int begin = plm_curve_basis(&curve, t, value, first, second);
+                for (int i = 0; i < degree + spans; i++)
+                    assert_near(i >= begin && i <= begin + degree ? value[i - begin] : 0,
+                                recursion(degree, degree, spans, i, t), 1e-14);
+            }
+        }
+}
+
 static void basis_functions_sum_to_one_and_derivatives_are_differences(void **unused)
 {
     (void)unused;
@@ -88,6 +124,7 @@ static void coincident_ends_make_no_curve(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(basis_functions_are_those_of_the_recursion),
         cmocka_unit_test(basis_functions_sum_to_one_and_derivatives_are_differences),
         cmocka_unit_test(the_length_of_a_parabola_is_its_closed_form_and_walking_inverts_it),
         cmocka_unit_test(the_foot_is_the_nearest_point),
