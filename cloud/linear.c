@@ -7,10 +7,16 @@ enum { MAXIMUM_SWEEPS = 32 }; /* quadratic convergence: 6 to 8 sweeps are the ru
 
 static void rotate(double a[3][3], double v[3][3], int p, int q)
 {
-    if (a[p][q] == 0.0) return;
+    /* Small beside both diagonals: the eigenvalues keep their relative accuracy without this turn (J. Demmel and
+     * K. Veselic, SIAM J. Matrix Anal. Appl. 13, 1992). */
+    if (a[p][q] * a[p][q] <= 1e-34 * fabs(a[p][p] * a[q][q])) {
+        a[p][q] = a[q][p] = 0.0;
+        return;
+    }
     const double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    const double t = (theta >= 0 ? 1.0 : -1.0) / (fabs(theta) + hypot(theta, 1.0));
-    const double c = 1.0 / hypot(t, 1.0);
+    const double root = fabs(theta) < 1e8 ? sqrt(theta * theta + 1.0) : fabs(theta);
+    const double t = (theta >= 0 ? 1.0 : -1.0) / (fabs(theta) + root);
+    const double c = 1.0 / sqrt(t * t + 1.0);
     const double s = t * c;
     const int r = 3 - p - q;
     const double apq = a[p][q], arp = a[r][p], arq = a[r][q];
