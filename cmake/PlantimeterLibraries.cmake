@@ -10,11 +10,12 @@ find_package(PCL REQUIRED COMPONENTS common kdtree search filters features segme
 find_package(embree 3 REQUIRED)
 pkg_check_modules(FLANN REQUIRED IMPORTED_TARGET flann liblz4)
 pkg_check_modules(GSL REQUIRED IMPORTED_TARGET gsl)
+pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 
-set(PLANTIMETER_IO_LIBRARIES OpenMeshCore ${GeographicLib_LIBRARIES} PkgConfig::JANSSON m)
+set(PLANTIMETER_IO_LIBRARIES OpenMeshCore ${GeographicLib_LIBRARIES} PkgConfig::JANSSON PkgConfig::NETTLE m)
 set(PLANTIMETER_SEGMENT_LIBRARIES PkgConfig::GSL m)
 set(PLANTIMETER_MESH_LIBRARIES CGAL::CGAL OpenMeshCore PkgConfig::GSL m)
 set(PLANTIMETER_SIMULATE_LIBRARIES embree PkgConfig::GSL PkgConfig::JANSSON PNG::PNG m)

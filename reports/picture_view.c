@@ -2,6 +2,8 @@
  * darkening what lies behind a near edge (C. Boucheny, Eye-dome lighting, 2009): points have no normals to shade by. */
 #include "reports/picture_view.h"
 
+#include "cloud/sampling.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -174,6 +176,8 @@ static void put_surfaces(buffer *b, const plm_measurement *measurement)
     }
 }
 
+enum { MOST_POINTS = 200000 }; /**< a tenth of the fine pixels */
+
 /** Leaves with higher numbers keep their points, whether they have a surface or not. */
 enum { MOST_LEAVES = 1 << 16 };
 
@@ -191,15 +195,22 @@ static plm_status list_surfaces(const plm_mesh *mesh, bool **has_surface, size_t
     return PLM_OK;
 }
 
-/* Points of noise are drawn small; those of a leaf whose surface is drawn would only speckle it. */
+/* Points of noise are drawn small; those of a leaf whose surface is drawn would only speckle it. A view shows no more than
+ * so many points. */
 static plm_status put_points(buffer *b, const plm_measurement *measurement, double radius, plm_error *error)
 {
     const plm_cloud *cloud = &measurement->cloud;
     bool *has_surface;
     size_t leaves;
-    const plm_status status = list_surfaces(&measurement->leaves, &has_surface, &leaves, error);
-    if (status != PLM_OK) return status;
-    for (size_t i = 0; i < cloud->count; i++) {
+    uint32_t *drawn = plm_alloc(cloud->count, sizeof *drawn, error);
+    plm_status status = drawn ? list_surfaces(&measurement->leaves, &has_surface, &leaves, error) : PLM_E_MEMORY;
+    if (status != PLM_OK) {
+        plm_free(drawn);
+        return status;
+    }
+    const size_t count = plm_sample_rows((const float(*)[3])cloud->xyz, cloud->count, MOST_POINTS, drawn);
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = drawn[k];
         const plm_label label = cloud->label ? (plm_label)cloud->label[i] : PLM_LABEL_OTHER;
         const int32_t organ = cloud->organ ? cloud->organ[i] : -1;
         if (label == PLM_LABEL_LEAF && organ >= 0 && (size_t)organ < leaves && has_surface[organ]) continue;
@@ -213,6 +224,7 @@ static plm_status put_points(buffer *b, const plm_measurement *measurement, doub
         put_disc(b, centre, cloud->label && label == PLM_LABEL_OTHER ? 1 : radius, colour);
     }
     plm_free(has_surface);
+    plm_free(drawn);
     return PLM_OK;
 }
 
@@ -224,6 +236,7 @@ static double disc_radius(const buffer *b, const plm_measurement *measurement)
         const double covered = 0.15 * b->view->width * b->view->height / (b->view->scale * b->view->scale);
         spacing = sqrt(covered / (double)measurement->cloud.count);
     }
+    if (measurement->cloud.count > MOST_POINTS) spacing *= sqrt((double)measurement->cloud.count / MOST_POINTS);
     return fmin(fmax(0.8 * spacing * b->view->scale * FINE, 1.2), 7);
 }
 
