@@ -1,8 +1,9 @@
-/* traits/extreme.c: extremes of a sampled surface. The expected maximum of a random half of sorted heights z1 >= z2 >= ... is
- * sum z_i 2^-i / sum 2^-i; what it falls short of z1 is, for an edge, what z1 falls short of the surface. */
+/* traits/extreme.c: extremes of a sampled, noisy surface: the outermost points are chosen, freed of those that nothing
+ * supports, and projected onto the surface; traits/sample_end.c says where the surface ends behind them. */
 #include "traits/extreme.h"
 
 #include "cloud/linear.h"
+#include "traits/sample_end.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,14 +12,21 @@
 enum {
     BINS = 4096,
     BAND_POINTS = 2000, /* enough to know spacing and noise by */
-    HALF_TERMS = 40,    /* 2^-40 ends the sum */
     BALL_ROOM = 2048,
     QUADRIC_POINTS = 120,
     QUADRIC_USUAL = 48, /* fewer leave half of the noise in the projected points */
     QUADRIC_FEWEST = 12,
-    GHOSTS = 4, /* points that may stand out at one end */
-    BACKING = 3 /* a point of the surface has so many near its height */
+    SUPPORT = 8, /* neighbours that support a point */
+    NEAR_TOP = 8 /* SD below the top from which a point cannot become it */
 };
+
+/* Noise along the surface per noise across it, which projection does not take away. */
+static const double noise_along = 0.5, fused_along = 0.7;
+/* Part of the noise that stays in an extreme as a common error: the noise is known to a half, what of it lies along the surface included. */
+static const double noise_unknown = 0.5;
+/* Distance to the 8th neighbour on a sheet in spacings, and by which factor it may be exceeded: in voxel means, which are
+ * even, points of the plant reach 1.7 at leaf tips, ghosts begin at 1.2. Elsewhere against that of the neighbours. */
+static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach = 3.0;
 
 /* ---- Projection ------------------------------------------------------------------------------------------------ */
 
@@ -45,26 +53,34 @@ static void tangent_frame(const double (*offset)[3], const double *weight, size_
     plm_eigen3(moment, value, axis);
 }
 
-/* Height of the weighted quadric at u = v = 0. False where the neighbours do not determine it. */
-static bool quadric_height(const patch *p, double scale, double *height)
+/* Height of the weighted quadric at u = v = 0, and its leverage: the variance of that height per variance of the points. False
+ * where the neighbours do not determine it. */
+static bool quadric_height(const patch *p, double scale, double *height, double *leverage)
 {
-    double normal[36] = {0}, right[6] = {0};
+    double normal[36] = {0}, right[6] = {0}, spread[36] = {0}, factor[36], unit[6] = {1};
     for (size_t i = 0; i < p->count; i++) {
         const double u = p->local[i][0] / scale, v = p->local[i][1] / scale, w = p->weight[i];
         const double row[6] = {1, u, v, u * u, u * v, v * v};
         for (int a = 0; a < 6; a++) {
             right[a] += w * row[a] * p->local[i][2];
-            for (int b = 0; b < 6; b++) normal[a * 6 + b] += w * row[a] * row[b];
+            for (int b = 0; b < 6; b++) {
+                normal[a * 6 + b] += w * row[a] * row[b];
+                spread[a * 6 + b] += w * w * row[a] * row[b];
+            }
         }
     }
     for (int a = 1; a < 6; a++) normal[a * 7] *= 1 + 1e-6; /* a ridge for slivers */
-    if (!plm_solve_spd(6, normal, right)) return false;
+    memcpy(factor, normal, sizeof factor);
+    if (!plm_solve_spd(6, normal, right) || !plm_solve_spd(6, factor, unit)) return false;
     *height = right[0];
+    *leverage = 0;
+    for (int a = 0; a < 6; a++)
+        for (int b = 0; b < 6; b++) *leverage += unit[a] * spread[a * 6 + b] * unit[b];
     return true;
 }
 
 bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const float point[3], double noise,
-                            float projected[3])
+                            plm_projection *onto)
 {
     uint32_t row[BALL_ROOM];
     float squared[BALL_ROOM];
@@ -86,18 +102,43 @@ bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const
     for (size_t i = 0; i < p.count; i++)
         for (int k = 0; k < 3; k++) local[i][k] = plm_dot(offset[i], axis[k]);
     double height;
-    if (!quadric_height(&p, 5 * noise, &height) || !(fabs(height) < 4 * noise)) return false;
-    for (int k = 0; k < 3; k++) projected[k] = (float)(point[k] + height * axis[2][k]);
+    if (!quadric_height(&p, 5 * noise, &height, &onto->leverage) || !(fabs(height) < 4 * noise)) return false;
+    onto->leverage = fmin(onto->leverage, 1);
+    for (int k = 0; k < 3; k++) {
+        onto->place[k] = (float)(point[k] + height * axis[2][k]);
+        onto->normal[k] = axis[2][k];
+    }
     return true;
 }
 
-/* ---- Extremes -------------------------------------------------------------------------------------------------- */
+/* ---- Support --------------------------------------------------------------------------------------------------- */
 
-static int descending(const void *a, const void *b)
+static double reach_at(const plm_index *index, const float point[3], uint32_t *row)
+{
+    float squared[SUPPORT + 1]; /* the point itself is one of them */
+    const size_t found = plm_index_nearest(index, point, SUPPORT + 1, row, squared);
+    return found > SUPPORT ? sqrt((double)squared[SUPPORT]) : INFINITY;
+}
+
+static int ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
+    return (x > y) - (x < y);
 }
+
+bool plm_is_supported(const plm_index *index, const float (*xyz)[3], const float point[3], const plm_sampling *sampling)
+{
+    uint32_t row[SUPPORT + 1], ignored[SUPPORT + 1];
+    const double reach = reach_at(index, point, row);
+    if (!isfinite(reach)) return true; /* too few points to tell */
+    if (sampling->fused) return reach <= fused_reach * reach_per_spacing * sampling->spacing;
+    double near[SUPPORT];
+    for (int i = 0; i < SUPPORT; i++) near[i] = reach_at(index, xyz[row[i + 1]], ignored);
+    qsort(near, SUPPORT, sizeof *near, ascending);
+    return reach <= uneven_reach * near[SUPPORT / 2];
+}
+
+/* ---- Extremes -------------------------------------------------------------------------------------------------- */
 
 /* Where the highest points end: the upper band of at least `wanted` points that is at least `thickness` deep. */
 static double band_floor(const double *along, size_t count, double low, double high, size_t wanted, double thickness)
@@ -128,66 +169,101 @@ static size_t collect(const float (*xyz)[3], const double *along, size_t count, 
     return found;
 }
 
-/* Extreme from heights, any order, overwritten. A few heights that stand out by more than `alone` from those behind them are
- * ghosts that the cleaning let through: a surface that is sampled at all has its next points near. */
-static void reach(double *height, size_t count, bool noisy, double alone, double *top, double *gap)
+/** A point of the band and how high it is. */
+typedef struct ranked {
+    double height;
+    float place[3];
+} ranked;
+
+/* Highest first; an order that does not depend on that of the rows. */
+static int compare_ranked(const void *a, const void *b)
 {
-    qsort(height, count, sizeof *height, descending);
-    for (int dropped = 0; dropped < GHOSTS && count > 8 * GHOSTS && height[0] - height[BACKING] > alone; dropped++)
-        height++, count--;
-    double sum = 0, weights = 0, weight = 0.5;
-    for (size_t i = 0; i < count && i < HALF_TERMS; i++, weight /= 2) {
-        sum += weight * (height[0] - height[i]);
-        weights += weight;
-    }
-    *gap = sum / weights;
-    *top = height[0] + (noisy ? 0 : *gap);
+    const ranked *x = a, *y = b;
+    if (x->height != y->height) return x->height > y->height ? -1 : 1;
+    return memcmp(x->place, y->place, sizeof x->place);
 }
 
-/* Heights along the direction of the band's points after projection; those deep below the top cannot become it. */
-static size_t projected_heights(const plm_index *index, const float (*band)[3], size_t count, const double direction[3],
-                                double noise, double high, double *height)
+/** The heights that an end is found from. */
+typedef struct heights {
+    size_t count;
+    double *at;
+    double spread; /* SD of the noise that projection leaves in them */
+    double facing; /* mean squared cosine between the surface and the direction */
+} heights;
+
+/* The band's supported points, projected, from the highest on, as far down as one could become the top. */
+static void take_noisy(const plm_index *index, const float (*band)[3], const ranked *rank, size_t count,
+                       const double direction[3], const plm_sampling *sampling, heights *out)
 {
-    size_t used = 0;
+    const double along = sampling->fused ? fused_along : noise_along;
+    double high = INFINITY, squares = 0;
+    for (size_t i = 0; i < count && (out->count == 0 || rank[i].height > high - NEAR_TOP * sampling->noise); i++) {
+        plm_projection onto;
+        if (!plm_is_supported(index, band, rank[i].place, sampling)) continue;
+        if (!plm_project_to_surface(index, band, rank[i].place, sampling->noise, &onto)) continue;
+        if (out->count == 0) high = rank[i].height;
+        const double across = plm_dot(onto.normal, direction), squared = across * across;
+        out->at[out->count++] =
+            onto.place[0] * direction[0] + onto.place[1] * direction[1] + onto.place[2] * direction[2];
+        squares += squared * onto.leverage + (1 - squared) * along * along;
+        out->facing += squared;
+    }
+    out->spread = sampling->noise * sqrt(squares / fmax(1, (double)out->count));
+    out->facing /= fmax(1, (double)out->count);
+}
+
+static plm_status rank_heights(const float (*band)[3], size_t count, const double direction[3], ranked **rank,
+                               plm_error *error)
+{
+    *rank = plm_alloc(count, sizeof **rank, error);
+    if (!*rank) return PLM_E_MEMORY;
     for (size_t i = 0; i < count; i++) {
-        const double at = band[i][0] * direction[0] + band[i][1] * direction[1] + band[i][2] * direction[2];
-        if (at < high - 8 * noise) continue;
-        float moved[3];
-        if (!plm_project_to_surface(index, band, band[i], noise, moved)) continue;
-        height[used++] = moved[0] * direction[0] + moved[1] * direction[1] + moved[2] * direction[2];
+        (*rank)[i].height = band[i][0] * direction[0] + band[i][1] * direction[1] + band[i][2] * direction[2];
+        memcpy((*rank)[i].place, band[i], sizeof band[i]);
     }
-    return used;
+    qsort(*rank, count, sizeof **rank, compare_ranked);
+    return PLM_OK;
 }
 
-static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3], double high,
-                               plm_sampling *sampling, plm_extreme *extreme, plm_error *error)
+/* The end behind the heights. Narrow tips: what is not as wide as a noisy point cloud's spacing has no points of its own,
+ * which is as much of the tip as the spacing is of the width that the points show. */
+static void find_end(const heights *found, const plm_sampling *sampling, const double direction[3],
+                     plm_extreme *extreme)
 {
-    double *height = plm_alloc(count, sizeof *height, error);
-    if (!height) return PLM_E_MEMORY;
+    double depth;
+    const size_t used =
+        plm_end_of_sample(found->at, found->count, found->spread, &extreme->value, &extreme->std_error, &depth);
+    if (!(found->spread > 0)) return;
+    const double tip = depth * depth / (2 * (double)used * sampling->spacing);
+    const double under = sampling->fused && direction[2] < 0 ? -direction[2] * found->facing * sampling->spacing : 0;
+    const double noise = noise_unknown * sampling->noise;
+    extreme->std_error = sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise);
+}
+
+static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3], plm_sampling *sampling,
+                               plm_extreme *extreme, plm_error *error)
+{
+    heights found = {.at = plm_alloc(count, sizeof *found.at, error)};
+    ranked *rank = NULL;
     plm_index *index = NULL;
-    plm_status status = plm_index_build(band, count, &index, error);
+    plm_status status = found.at ? rank_heights(band, count, direction, &rank, error) : PLM_E_MEMORY;
+    if (status == PLM_OK) status = plm_index_build(band, count, &index, error);
     if (status == PLM_OK) {
         *sampling = (plm_sampling){0};
         status = plm_sampling_measure(index, band, count, NULL, sampling, error);
         if (status == PLM_E_DEGENERATE) status = PLM_OK; /* a few points, or all in one place: taken as they are */
     }
     if (status == PLM_OK) {
-        const double s = sampling->spacing;
-        const bool noisy = sampling->noise > PLM_NOISE_FREE * s;
-        size_t used = count;
-        if (noisy) used = projected_heights(index, band, count, direction, sampling->noise, high, height);
-        if (!noisy || used == 0)
-            for (used = 0; used < count; used++)
-                height[used] =
-                    band[used][0] * direction[0] + band[used][1] * direction[1] + band[used][2] * direction[2];
-        double gap;
-        reach(height, used, noisy, noisy ? 2 * fmax(sampling->noise, s) : INFINITY, &extreme->value, &gap);
-        const double noise = noisy ? 1.3 * sampling->noise / sqrt(2.0) : 0; /* the factor is for two ends */
-        extreme->std_error = sqrt(0.64 * gap * gap + noise * noise + 0.02 * s * s);
+        if (sampling->noise > PLM_NOISE_FREE * sampling->spacing)
+            take_noisy(index, band, rank, count, direction, sampling, &found);
+        if (found.count == 0)
+            for (; found.count < count; found.count++) found.at[found.count] = rank[found.count].height;
+        find_end(&found, sampling, direction, extreme);
         extreme->count = count;
     }
     plm_index_free(index);
-    plm_free(height);
+    plm_free(rank);
+    plm_free(found.at);
     return status;
 }
 
@@ -213,7 +289,7 @@ plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double d
         status = band ? PLM_OK : PLM_E_MEMORY;
         if (status == PLM_OK) {
             collect(xyz, along, count, floor, band);
-            status = measure_band((const float(*)[3])band, size, direction, high, &sampling, &found, error);
+            status = measure_band((const float(*)[3])band, size, direction, &sampling, &found, error);
         }
         plm_free(band);
         /* Points of the band's lower side must find their neighbours in it. */

@@ -14,18 +14,29 @@ typedef struct plm_extreme {
 /** Finds how far the surface behind count points reaches along a unit direction. Only the outermost points are looked at
  * (some thousand, with a small index of their own), so the cost is one pass over the cloud.
  *
- * Free of noise: the farthest point, plus the gap that sampling leaves: what a random half of the points would reach less.
- * Noisy: the outermost points are first projected onto local quadrics, since noise inflates every extreme. Standard error
- * from gap, noise and spacing (the factors are fits over virtual scans; see docs/accuracy.md).
+ * Noisy: points without support are left out, the others projected onto local quadrics. Where the surface ends behind them
+ * and how sure that is say the outermost heights (traits/sample_end.h).
  * PLM_E_DEGENERATE for no points. */
 plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3], plm_extreme *extreme,
                              plm_error *error);
 
+/** A point moved onto the surface through its neighbours. */
+typedef struct plm_projection {
+    float place[3];
+    double normal[3]; /**< of the surface, unit, either side */
+    double leverage;  /**< variance that is left across the surface per variance of the points, at most 1 */
+} plm_projection;
+
 /** Projects a point onto the quadric through its neighbours within 5 noise, weighted down by distance. neighbours come from
- * index over xyz. False, and projected untouched, where they determine no surface or the point lies beyond 4 noise off it:
- * it is then no point of the surface (a ghost, a floater). */
+ * index over xyz. False where they determine no surface or the point lies beyond 4 noise off it: it is then no point of
+ * the surface (a ghost, a floater). */
 bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const float point[3], double noise,
-                            float projected[3]);
+                            plm_projection *onto);
+
+/** Whether a point (one of xyz) has neighbours as near as the surface of the plant would have them. What has not (a trail
+ * of ghosts off a rim, a floater) makes no extreme and no corner of a hull. */
+bool plm_is_supported(const plm_index *index, const float (*xyz)[3], const float point[3],
+                      const plm_sampling *sampling);
 
 /** Below this ratio of noise to spacing a cloud counts as free of noise. */
 #define PLM_NOISE_FREE 0.1

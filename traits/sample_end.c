@@ -1,0 +1,110 @@
+/* traits/sample_end.c: the end of a distribution from its highest values. Condition: the error is that of the gap behind the
+ * highest points, some 0.3 of it, however the surface ends. */
+#include "traits/sample_end.h"
+
+#include "cloud/linear.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    FEWEST = 24, /* heights: more stand for parts of the plant further down */
+    MOST = 300,
+    STEPS = 96, /* of the grid of ends */
+    SMOOTH_POWERS = 4,
+    NOISY_POWERS = 2 /* whole numbers: their blurred densities have closed forms */
+};
+
+static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5};
+static const double noise_depth = 3.0; /* SD of noise that the heights must span to show where it ends */
+static const double below_top = 4.0;   /* SD of noise below the highest point from which the end is sought ... */
+
+static int descending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x < y) - (x > y);
+}
+
+/* Log likelihood, up to a constant, of the heights above the last one (height[used]) for an end and a power. */
+static double smooth_likelihood(const double *height, size_t used, double end, double power)
+{
+    double sum = (double)used * (log(power) - power * log(end - height[used]));
+    for (size_t i = 0; i < used; i++) sum += (power - 1) * log(end - height[i]);
+    return sum;
+}
+
+/* Mean of max(y + n, 0)^k over standard normal n, for k = 0, 1, 2: the blurred powers, and each one's integral but for a
+ * factor. Far below 0 the tail's leading term, as the closed form cancels. */
+static void blurred_powers(double y, double mean[3])
+{
+    const double density = exp(-0.5 * y * y) / sqrt(2 * PLM_PI), below = 0.5 * erfc(-y / sqrt(2));
+    if (y < -6) {
+        mean[0] = fmax(density / -y, 1e-300);
+        mean[1] = fmax(density / (y * y), 1e-300);
+        mean[2] = fmax(-2 * density / (y * y * y), 1e-300);
+        return;
+    }
+    mean[0] = below;
+    mean[1] = y * below + density;
+    mean[2] = (y * y + 1) * below + y * density;
+}
+
+/* The same with noise, for the powers 1 and 2. */
+static void noisy_likelihood(const double *height, size_t used, double end, double spread, double out[NOISY_POWERS])
+{
+    double mean[3];
+    blurred_powers((end - height[used]) / spread, mean);
+    for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] = (double)used * log(power / mean[power]);
+    for (size_t i = 0; i < used; i++) {
+        blurred_powers((end - height[i]) / spread, mean);
+        for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] += log(mean[power - 1]);
+    }
+}
+
+/* Mean and SD over a grid of ends from weights in logarithms. */
+static void grid_moments(const double (*weight)[SMOOTH_POWERS], size_t powers, double first, double step, double *end,
+                         double *std_error)
+{
+    double most = -INFINITY, total = 0, sum = 0, squares = 0;
+    for (size_t j = 0; j < STEPS; j++)
+        for (size_t p = 0; p < powers; p++) most = fmax(most, weight[j][p]);
+    for (size_t j = 0; j < STEPS; j++)
+        for (size_t p = 0; p < powers; p++) {
+            const double w = exp(weight[j][p] - most), at = ((double)j + 0.5) * step;
+            total += w;
+            sum += w * at;
+            squares += w * at * at;
+        }
+    const double mean = sum / total;
+    *end = first + mean;
+    *std_error = sqrt(fmax(squares / total - mean * mean, 0) + step * step / 12);
+}
+
+size_t plm_end_of_sample(double *height, size_t count, double spread, double *end, double *std_error, double *depth)
+{
+    qsort(height, count, sizeof *height, descending);
+    size_t used = 0;
+    while (used + 1 < count && used < MOST && (used < FEWEST || height[used] > height[0] - noise_depth * spread))
+        used++;
+    const double span = height[0] - height[used];
+    if (!(span > 0)) { /* all at one height */
+        *end = height[0];
+        *std_error = spread;
+        *depth = 0;
+        return count;
+    }
+    const double first = fmax(height[used], height[0] - below_top * spread), step = (height[0] + span - first) / STEPS;
+    double weight[STEPS][SMOOTH_POWERS];
+    for (size_t j = 0; j < STEPS; j++) {
+        const double at = first + ((double)j + 0.5) * step;
+        if (spread > 0)
+            noisy_likelihood(height, used, at, spread, weight[j]);
+        else
+            for (size_t p = 0; p < SMOOTH_POWERS; p++)
+                weight[j][p] = smooth_likelihood(height, used, at, smooth_power[p]);
+    }
+    grid_moments((const double(*)[SMOOTH_POWERS])weight, spread > 0 ? NOISY_POWERS : SMOOTH_POWERS, first, step, end,
+                 std_error);
+    *depth = fmax(*end - height[used], 0);
+    return used;
+}

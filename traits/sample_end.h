@@ -1,0 +1,19 @@
+/* traits/sample_end.h: where a surface ends, from the outermost ones of points sampled on it. Internal. */
+#ifndef PLANTIMETER_TRAITS_SAMPLE_END_H
+#define PLANTIMETER_TRAITS_SAMPLE_END_H
+
+#include <stddef.h>
+
+/** Where heights of points of a surface would end if it were sampled without gaps and without noise.
+ * height       count of them (at least 1), any order: sorted on return, highest first
+ * spread       SD of the noise in them, as known beforehand; 0: none
+ * end, std_error  out, mean and standard deviation of the posterior
+ * depth        out, from the end to the lowest height that was used; gives how many were
+ *
+ * Below the end e the surface's area grows as a power a of the depth: 1 for a flat edge, 3/2 for a round rim, 2 for a tip.
+ * The highest points then have the density a (e - z)^(a - 1), blurred by the noise; end and power are found together,
+ * all ends alike beforehand and the powers alike (P. Hall 1982, On estimating the endpoint of a distribution; here with
+ * a prior in place of his known power). */
+size_t plm_end_of_sample(double *height, size_t count, double spread, double *end, double *std_error, double *depth);
+
+#endif
