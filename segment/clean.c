@@ -1,31 +1,18 @@
-/* segment/clean.c: floaters and ghost points, judged on a thinned copy.
- *
- * A point is judged by the distance to its sixth neighbour, over the cloud's median and over its neighbours' own. Both
- * must not be large at once: a thin petiole is sparse, but like its neighbours; the thin region of a splat is sparse by
- * degrees; a floater is far from everything, or far from what its neighbours are near to (the idea of the local outlier
- * factor, Breunig et al. 2000). Points on a line need twice the distance for six neighbours and are given it. Then
- * clusters of floaters: small pieces, further from the next larger piece than they are long.
- *
- * On the development clouds this takes 87 to 96 % of the wrong points of splats and 57 % of those of depth cameras (the
- * others lie within 2 mm of edges), and 0 to 0.6 % of the stem, petiole and leaf points. Counts within fixed balls took
- * as many wrong ones and up to 5 % of the good. */
+/* segment/clean.c: floaters and ghost points, judged on a thinned copy: first point by point (segment/ghosts.c), then
+ * clusters of floaters: small pieces, further from the next larger piece than they are long. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cloud/linear.h"
 #include "cloud/neighbours.h"
+#include "segment/ghosts.h"
 #include "segment/scale.h"
 #include "segment/segment.h"
-#include "segment/subset.h"
 #include "segment/thinning.h"
 
-enum { BUDGET = 25000, ENOUGH = 200000, NEAREST = 8, SIXTH = 5, FEWEST = 20, AROUND = 256 };
+enum { BUDGET = 80000, NEAREST = 8, SIXTH = 5, FEWEST = 10 * PLM_GHOST_NEIGHBOURS, AROUND = 256 };
 
-static const double jump = 3;            /* over the neighbours' distances: alone enough to be dropped */
-static const double least_far = 3.2;     /* over the median distance: alone enough, or the spread to the power of ... */
-static const double spread_power = 6;    /* (upper quartile / median): sparse regions are part of some clouds */
-static const double straight = 0.1;      /* middle over largest variance of seven points on a line */
+static const double likely = 0.5;        /* probability from which on a point is dropped */
 static const double small_share = 0.004; /* of the thinned points: a larger piece is never a floater */
 static const double link_far = 3,
                     link_near = 1.3; /* spacings, or distances to the sixth: what holds a piece together */
@@ -37,8 +24,6 @@ typedef struct sieve {
     plm_index *index;
     uint32_t *row;  /* count x NEAREST: neighbours, nearest first */
     float *squared; /* their squared distances */
-    float *far;     /* distance to the sixth, halved on lines */
-    float *sorted;
     bool *drop;
     uint32_t *parent; /* of the union of pieces */
     uint32_t *size;
@@ -49,46 +34,6 @@ typedef struct sieve {
 static float sixth(const sieve *s, size_t i)
 {
     return sqrtf(s->squared[i * NEAREST + SIXTH]);
-}
-
-/* Do the point and its six neighbours lie on a line? */
-static bool on_a_line(const sieve *s, size_t i)
-{
-    double mean[3] = {0}, moment[6] = {0}, value[3], vector[3][3];
-    const double n = SIXTH + 2;
-    for (int j = -1; j <= SIXTH; j++) {
-        const float *p = s->xyz[j < 0 ? i : s->row[i * NEAREST + (size_t)j]];
-        double d[3];
-        for (int a = 0; a < 3; a++) d[a] = (double)p[a] - s->xyz[i][a];
-        for (int a = 0, m = 0; a < 3; a++) {
-            mean[a] += d[a] / n;
-            for (int b = a; b < 3; b++) moment[m++] += d[a] * d[b] / n;
-        }
-    }
-    for (int a = 0, m = 0; a < 3; a++)
-        for (int b = a; b < 3; b++) moment[m++] -= mean[a] * mean[b];
-    plm_eigen3(moment, value, vector);
-    return value[1] < straight * value[0];
-}
-
-static void judge_points(sieve *s)
-{
-    for (size_t i = 0; i < s->count; i++) s->far[i] = s->sorted[i] = sixth(s, i);
-    const double median = plm_quantile(s->sorted, s->count, 0.5), quartile = plm_quantile(s->sorted, s->count, 0.75);
-    if (!(median > 0)) return;
-    const double most = log(fmax(pow(quartile / median, spread_power), least_far));
-#pragma omp parallel for schedule(dynamic, 256)
-    for (size_t i = 0; i < s->count; i++)
-        if (s->far[i] > median && on_a_line(s, i)) s->far[i] *= 0.5f;
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < s->count; i++) {
-        float around[SIXTH + 1];
-        for (size_t j = 0; j <= SIXTH; j++) around[j] = s->far[s->row[i * NEAREST + j]];
-        const double near = plm_quantile(around, SIXTH + 1, 0.5), far = s->far[i];
-        double score = fmax(log(far / median), 0) / most;
-        if (far > near) score += near > 0 ? log(far / near) / log(jump) : INFINITY;
-        s->drop[i] = score > 1;
-    }
 }
 
 /* ---- Clusters ------------------------------------------------------------------------------------------------- */
@@ -160,27 +105,19 @@ static plm_status sift(const float (*xyz)[3], size_t count, double spacing, bool
     plm_status status = plm_index_build(xyz, count, &s.index, error);
     s.row = plm_alloc(count * NEAREST, sizeof *s.row, error);
     s.squared = plm_alloc(count * NEAREST, sizeof *s.squared, error);
-    s.far = plm_alloc(count, sizeof *s.far, error);
-    s.sorted = plm_alloc(count, sizeof *s.sorted, error);
     s.parent = plm_alloc(count, sizeof *s.parent, error);
     s.size = plm_alloc_zero(count, sizeof *s.size, error);
     s.longest = plm_alloc_zero(count, sizeof *s.longest, error);
     s.apart = plm_alloc_zero(count, sizeof *s.apart, error);
     s.low = plm_alloc(count, sizeof *s.low, error);
     s.high = plm_alloc(count, sizeof *s.high, error);
-    const bool room =
-        s.row && s.squared && s.far && s.sorted && s.parent && s.size && s.longest && s.apart && s.low && s.high;
+    const bool room = s.row && s.squared && s.parent && s.size && s.longest && s.apart && s.low && s.high;
     if (status == PLM_OK && !room) status = PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_index_table(s.index, NEAREST, s.row, s.squared, error);
-    if (status == PLM_OK) {
-        judge_points(&s);
-        drop_clusters(&s, spacing);
-    }
+    if (status == PLM_OK) drop_clusters(&s, spacing);
     plm_index_free(s.index);
     plm_free(s.row);
     plm_free(s.squared);
-    plm_free(s.far);
-    plm_free(s.sorted);
     plm_free(s.parent);
     plm_free(s.size);
     plm_free(s.longest);
@@ -190,41 +127,21 @@ static plm_status sift(const float (*xyz)[3], size_t count, double spacing, bool
     return status;
 }
 
-/* Median distance to the nearest other point, coinciding ones left out; 0 where all coincide. */
-static plm_status median_nearest(const float (*xyz)[3], size_t count, double *spacing, plm_error *error)
+/* Likely ghosts and floaters, and the median distance of nearest neighbours. */
+static plm_status judge(const float (*xyz)[3], size_t count, bool *drop, double *spacing, plm_error *error)
 {
-    plm_index *index = NULL;
+    float(*feature)[PLM_GHOST_FEATURES] = plm_alloc(count, sizeof *feature, error);
     float *squared = plm_alloc(count, sizeof *squared, error);
-    plm_status status = squared ? plm_index_build(xyz, count, &index, error) : PLM_E_MEMORY;
-    if (status == PLM_OK) status = plm_index_table(index, 1, NULL, squared, error);
+    plm_status status = feature && squared ? plm_neighbour_table(xyz, count, 1, NULL, squared, error) : PLM_E_MEMORY;
     if (status == PLM_OK) {
-        size_t apart = 0;
-        for (size_t i = 0; i < count; i++)
-            if (squared[i] > 0) squared[apart++] = squared[i];
-        *spacing = apart ? sqrt(plm_quantile(squared, apart, 0.5)) : 0;
+        *spacing = sqrt((double)plm_quantile(squared, count, 0.5));
+        if (count >= FEWEST) status = plm_ghost_features(xyz, count, feature, error);
     }
-    plm_index_free(index);
+    const int64_t rows = status == PLM_OK && count >= FEWEST ? (int64_t)count : 0;
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < rows; i++) drop[i] = plm_ghost_probability(feature[i]) > likely;
+    plm_free(feature);
     plm_free(squared);
-    return status;
-}
-
-/* The spacing of a copy of some BUDGET points; of very many points, a subset is enough to make it. */
-static plm_status thinned_spacing(const float (*xyz)[3], size_t count, double *spacing, plm_error *error)
-{
-    if (count <= BUDGET) return median_nearest(xyz, count, spacing, error);
-    const uint32_t mask = plm_subset_mask(count, ENOUGH);
-    plm_thinned thinned = {0};
-    double cell;
-    size_t n = 0;
-    float(*some)[3] = plm_alloc(count, sizeof *some, error);
-    plm_status status = some ? PLM_OK : PLM_E_MEMORY;
-    for (size_t i = 0; i < count && status == PLM_OK; i++)
-        if ((plm_point_bits(xyz[i]) & mask) == 0) memcpy(some[n++], xyz[i], sizeof *some);
-    if (status == PLM_OK) status = plm_thin_cell((const float(*)[3])some, n, BUDGET, &cell, error);
-    if (status == PLM_OK) status = plm_thin((const float(*)[3])some, n, cell, &thinned, error);
-    if (status == PLM_OK) status = median_nearest((const float(*)[3])thinned.xyz, thinned.count, spacing, error);
-    plm_thinned_free(&thinned);
-    plm_free(some);
     return status;
 }
 
@@ -233,16 +150,16 @@ static plm_status clean(const float (*xyz)[3], const uint32_t *row, size_t count
 {
     plm_thinned thinned = {0};
     bool *drop = NULL;
+    double cell = 0; /* as many points as there are */
     *spacing = 0;
     if (count < 2) return PLM_OK;
-    plm_status status = thinned_spacing(xyz, count, spacing, error);
-    if (status != PLM_OK || count < FEWEST || !(*spacing > 0)) return status;
-    status = plm_thin(xyz, count, *spacing, &thinned, error);
-    if (status == PLM_OK && thinned.count >= FEWEST) {
-        drop = plm_alloc_zero(thinned.count, sizeof *drop, error);
-        status = drop ? sift((const float(*)[3])thinned.xyz, thinned.count, *spacing, drop, error) : PLM_E_MEMORY;
-        for (size_t i = 0; i < count && status == PLM_OK; i++) keep[row[i]] = !drop[thinned.voxels.owner[i]];
-    }
+    plm_status status = count > BUDGET ? plm_thin_cell(xyz, count, BUDGET, &cell, error) : PLM_OK;
+    if (status == PLM_OK) status = plm_thin(xyz, count, cell, &thinned, error);
+    if (status == PLM_OK && !(drop = plm_alloc_zero(thinned.count, sizeof *drop, error))) status = PLM_E_MEMORY;
+    const float(*few)[3] = (const float(*)[3])thinned.xyz;
+    if (status == PLM_OK && thinned.count > 1) status = judge(few, thinned.count, drop, spacing, error);
+    if (status == PLM_OK && thinned.count >= FEWEST) status = sift(few, thinned.count, *spacing, drop, error);
+    for (size_t i = 0; i < count && status == PLM_OK; i++) keep[row[i]] = !drop[thinned.voxels.owner[i]];
     plm_free(drop);
     plm_thinned_free(&thinned);
     return status;

@@ -61,8 +61,9 @@ PLM_API plm_status plm_find_ground(const plm_cloud *cloud, plm_ground_mode mode,
                                    plm_ground *ground, plm_error *error);
 
 /** Marks floaters and ghost points: keep[i] (count of cloud) is false for noise. Rows with label PLM_LABEL_GROUND
- * (label may be NULL) are neither judged nor counted. A rule that does not eat thin stems: see segmentation notes in
- * segment/clean.c. spacing (may be NULL): out, the cloud's point spacing after thinning. No neighbour index. */
+ * (label may be NULL) are neither judged nor counted. Learnt from virtual plants, see segment/ghosts.c; clouds of less
+ * than 240 points lose none. spacing (may be NULL): out, the median distance of nearest neighbours in a copy of at most
+ * about 80 000 points. */
 PLM_API plm_status plm_clean(const plm_cloud *cloud, const uint8_t *label, bool *keep, double *spacing,
                              plm_error *error);
 
@@ -116,8 +117,8 @@ typedef struct plm_segmentation {
 } plm_segmentation;
 
 /** Labels stem, petioles and leaves of a plant, z up. label and keep are as plm_find_ground and plm_clean gave them
- * (either may be NULL). Ground stays ground, noise becomes other, except that a dropped point near a kept one takes its
- * label. The result is the caller's (plm_segmentation_free). PLM_E_DEGENERATE: too few points for any structure. */
+ * (either may be NULL). Ground stays ground, noise becomes other. The result is the caller's (plm_segmentation_free).
+ * PLM_E_DEGENERATE: too few points for any structure. */
 PLM_API plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
                                const plm_segment_options *options, plm_segmentation *result, plm_error *error);
 

@@ -2,14 +2,10 @@
  * all points. */
 #include "segment/segment.h"
 
-#include "cloud/neighbours.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
 
-#include <math.h>
 #include <string.h>
-
-static const double CARRY_SPACINGS = 3; /* a dropped point takes the label of a kept one within so many spacings */
 
 const char *plm_habit_name(plm_habit habit)
 {
@@ -62,34 +58,6 @@ static void carry(const plm_sketch *sketch, const uint32_t *row, size_t count, p
         out->organ[row[i]] = label == PLM_LABEL_STEM ? 0 : label == PLM_LABEL_OTHER ? -1 : sketch->leaf[w];
         if (out->leaflet) out->leaflet[row[i]] = label == PLM_LABEL_LEAF ? sketch->leaflet[w] : -1;
     }
-}
-
-/* Dropped points near kept ones take their labels. */
-static plm_status carry_dropped(const plm_cloud *cloud, const uint8_t *label, const bool *keep, const float (*xyz)[3],
-                                const uint32_t *row, size_t count, const float low[3], plm_segmentation *out,
-                                plm_error *error)
-{
-    if (!keep) return PLM_OK;
-    plm_index *index = NULL;
-    const plm_status status = plm_index_build(xyz, count, &index, error);
-    if (status != PLM_OK) return status;
-    const double limit = CARRY_SPACINGS * out->spacing;
-    const int64_t rows = (int64_t)cloud->count;
-#pragma omp parallel for schedule(dynamic, 256)
-    for (int64_t i = 0; i < rows; i++) {
-        if (keep[i] || (label && label[i] == PLM_LABEL_GROUND)) continue;
-        uint32_t nearest;
-        float squared;
-        const float *p = cloud->xyz[i];
-        const float query[3] = {p[0] - low[0], p[1] - low[1], p[2] - low[2]};
-        plm_index_nearest(index, query, 1, &nearest, &squared);
-        if (squared > limit * limit) continue;
-        out->label[i] = out->label[row[nearest]];
-        out->organ[i] = out->organ[row[nearest]];
-        if (out->leaflet) out->leaflet[i] = out->leaflet[row[nearest]];
-    }
-    plm_index_free(index);
-    return PLM_OK;
 }
 
 static void count_organs(plm_segmentation *out, size_t leaf_count)
@@ -156,8 +124,6 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     out.spacing = sketch.scale.spacing;
     out.noise = sketch.scale.noise;
     carry(&sketch, row, count, &out);
-    status = carry_dropped(cloud, label, keep, (const float(*)[3])xyz, row, count, low, &out, error);
-    if (status != PLM_OK) goto done;
     count_organs(&out, sketch.leaf_count);
     out.leaf_flags = plm_alloc_zero(out.leaf_count + 1, sizeof *out.leaf_flags, error);
     if (!out.leaf_flags) {

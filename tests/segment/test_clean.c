@@ -189,8 +189,8 @@ static void clouds_with_known_truth_lose_floaters_only(void **unused)
     static const struct {
         const char *name;
         double wrong, good; /* per cent of wrong points dropped at least, of good ones at most */
-    } expected[] = {{"eggplant_11_3dgs", 85, 1},          {"okra_32_3dgs", 85, 1},    {"cucumber_34_splat", 85, 1},
-                    {"arabidopsis_24_rgbd_pot", 50, 0.5}, {"maize_15_clean", 0, 0.5}, {"okra_13_clean", 0, 0.5}};
+    } expected[] = {{"eggplant_11_3dgs", 85, 1},        {"okra_32_3dgs", 85, 1},    {"cucumber_34_splat", 85, 1},
+                    {"arabidopsis_24_rgbd_pot", 70, 1}, {"maize_15_clean", 0, 0.5}, {"okra_13_clean", 0, 0.5}};
     const char *folder = test_data_folder();
     if (!folder) skip();
     plm_error error = {0};
