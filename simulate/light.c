@@ -81,8 +81,7 @@ static void place_sphere(plm_light_run *run)
 }
 
 /* The part's rays of every source. Who counts which batch is left to chance: sums of whole numbers come out the same. */
-static void trace_part(plm_light_run *run, int part, const uint16_t place[PLM_LIGHT_CELLS][PLM_LIGHT_CELLS],
-                       plm_ray_batch *batch, plm_light_tally *count)
+static void trace_part(plm_light_run *run, int part, plm_ray_batch *batch, plm_light_tally *count)
 {
     const uint64_t sources = (uint64_t)(run->options->circles * run->options->around), rays = run->options->rays;
     const uint64_t key = plm_key(run->options->seed, 500 + (uint64_t)part);
@@ -95,7 +94,7 @@ static void trace_part(plm_light_run *run, int part, const uint16_t place[PLM_LI
         const uint64_t source = job / batches, all = (here + sources - 1 - source) / sources;
         const uint64_t first = all * (job % batches) / batches, last = all * (job % batches + 1) / batches;
         const int thread = omp_get_thread_num();
-        plm_light_start(run, (int)source, first, (size_t)(last - first), place, &batch[thread]);
+        plm_light_start(run, (int)source, first, (size_t)(last - first), &batch[thread]);
         plm_light_follow(run, key, &batch[thread], &count[thread]);
     }
 }
@@ -164,15 +163,11 @@ static void collect(const plm_light_run *run, const plm_light_tally *count, int 
 static plm_status trace_parts(plm_light_run *run, const int32_t *face_group, plm_ray_batch *batch,
                               plm_light_tally *count, int threads, plm_light *light, plm_error *error)
 {
-    uint16_t place[PLM_LIGHT_CELLS][PLM_LIGHT_CELLS];
     part_statistics whole = {0}, *groups = plm_alloc_zero(light->group_count, sizeof *groups, error);
     uint64_t *sum = plm_alloc(light->group_count, sizeof *sum, error), all = 0;
     const bool has_room = groups && sum;
-    for (uint32_t row = 0; row < PLM_LIGHT_CELLS; row++)
-        for (uint32_t column = 0; column < PLM_LIGHT_CELLS; column++)
-            place[row][column] = (uint16_t)plm_curve_place(column, row);
     for (int part = 0; part < PARTS && has_room; part++) {
-        trace_part(run, part, (const uint16_t(*)[PLM_LIGHT_CELLS])place, batch, count);
+        trace_part(run, part, batch, count);
         group_sums(count, threads, light->face_count, face_group, sum, light->group_count, &all);
         add_part(&whole, part, all);
         for (size_t g = 0; g < light->group_count; g++) add_part(&groups[g], part, sum[g]);

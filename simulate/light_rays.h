@@ -2,6 +2,7 @@
 #ifndef PLANTIMETER_SIMULATE_LIGHT_RAYS_H
 #define PLANTIMETER_SIMULATE_LIGHT_RAYS_H
 
+#include "simulate/ray_order.h"
 #include "simulate/rays.h"
 #include "simulate/simulate.h"
 
@@ -30,20 +31,20 @@ typedef struct plm_light_tally {
     uint64_t escaped, rays;
 } plm_light_tally;
 
-/* Rays of one source that are on their way together. Each holds its energy, and the shares of the bands in it. */
-enum { PLM_RAY_BATCH = 4096 };
+/* Rays of one source that are on their way together. Until their first hit all have a whole parcel, a third of it in each band, and
+ * energy and band are not set. */
 typedef struct plm_ray_batch {
     size_t count;
     int source;
-    double origin[PLM_RAY_BATCH][3], direction[PLM_RAY_BATCH][3], band[PLM_RAY_BATCH][PLM_LIGHT_BANDS];
-    uint64_t energy[PLM_RAY_BATCH], number[PLM_RAY_BATCH];
+    uint64_t first; /* number of the first ray */
+    float share[2][PLM_RAY_BATCH],
+        place[2][PLM_RAY_BATCH]; /* of the start: of disc and turn; in the square about the disc */
+    plm_ray_lanes lanes;
+    uint16_t order[PLM_RAY_BATCH]; /* of each ray: its number, counted from the first */
+    uint64_t energy[PLM_RAY_BATCH];
+    double band[PLM_RAY_BATCH][PLM_LIGHT_BANDS]; /* shares of the bands in the energy */
     plm_hit hit[PLM_RAY_BATCH];
 } plm_ray_batch;
-
-enum { PLM_LIGHT_CELLS = 64 };
-
-/** Place of a cell of 64 x 64 along a curve that keeps neighbours together (Morton's). */
-uint32_t plm_curve_place(uint32_t column, uint32_t row);
 
 /** Fills in the directions of the sources; their shifts of the sequence follow from key. */
 void plm_light_place_sources(plm_light_run *run);
@@ -51,8 +52,7 @@ void plm_light_shift(plm_light_run *run, uint64_t key);
 
 /** Rays [first, first + count) of a source, on the disc across its direction that covers the sphere, count at most PLM_RAY_BATCH.
  * They are put in an order in which neighbours run side by side. */
-void plm_light_start(const plm_light_run *run, int number, uint64_t first, size_t count,
-                     const uint16_t place[PLM_LIGHT_CELLS][PLM_LIGHT_CELLS], plm_ray_batch *batch);
+void plm_light_start(const plm_light_run *run, int number, uint64_t first, size_t count, plm_ray_batch *batch);
 
 /** Follows a batch hit by hit to its end; key is that of the part. */
 void plm_light_follow(const plm_light_run *run, uint64_t key, plm_ray_batch *batch, plm_light_tally *count);

@@ -2,6 +2,7 @@
 #include "simulate/rays.h"
 
 #include <math.h>
+#include <string.h>
 
 #include <embree3/rtcore.h>
 
@@ -95,47 +96,67 @@ bool plm_rays_first(const plm_rays *rays, const double origin[3], const double d
 
 enum { PACKET = 8 };
 
-static void load_packet(const double (*origin)[3], const double (*direction)[3], size_t count, int *valid,
-                        struct RTCRayHit8 *packet)
+/* Rays [first, first + count) of the lanes; what lies behind them is not looked at. */
+static void load_packet(const plm_ray_lanes *lanes, size_t first, size_t count, struct RTCRay8 *ray)
 {
-    for (size_t k = 0; k < PACKET; k++) {
-        const size_t from = k < count ? k : 0; /* lanes that are not valid hold numbers all the same */
-        valid[k] = k < count ? -1 : 0;
-        packet->ray.org_x[k] = (float)origin[from][0];
-        packet->ray.org_y[k] = (float)origin[from][1];
-        packet->ray.org_z[k] = (float)origin[from][2];
-        packet->ray.tnear[k] = 0;
-        packet->ray.dir_x[k] = (float)direction[from][0];
-        packet->ray.dir_y[k] = (float)direction[from][1];
-        packet->ray.dir_z[k] = (float)direction[from][2];
-        packet->ray.time[k] = 0;
-        packet->ray.tfar[k] = INFINITY;
-        packet->ray.mask[k] = ~0u;
-        packet->ray.id[k] = 0;
-        packet->ray.flags[k] = 0;
-        packet->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-        packet->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    float *const to[2][3] = {{ray->org_x, ray->org_y, ray->org_z}, {ray->dir_x, ray->dir_y, ray->dir_z}};
+    for (int i = 0; i < 3; i++) {
+        if (count == PACKET) { /* the usual case, of a size that the compiler knows */
+            memcpy(to[0][i], &lanes->origin[i][first], PACKET * sizeof(float));
+            memcpy(to[1][i], &lanes->direction[i][first], PACKET * sizeof(float));
+        } else {
+            memcpy(to[0][i], &lanes->origin[i][first], count * sizeof(float));
+            memcpy(to[1][i], &lanes->direction[i][first], count * sizeof(float));
+        }
     }
 }
 
-void plm_rays_first_many(const plm_rays *rays, const double (*origin)[3], const double (*direction)[3], size_t count,
-                         plm_hit *hit)
+static void cast_each(const plm_rays *rays, const plm_ray_lanes *lanes, size_t count, plm_hit *hit)
+{
+    for (size_t k = 0; k < count; k++) {
+        double origin[3], direction[3];
+        for (int i = 0; i < 3; i++) {
+            origin[i] = (double)lanes->origin[i][k];
+            direction[i] = (double)lanes->direction[i][k];
+        }
+        if (!plm_rays_first(rays, origin, direction, 0, INFINITY, &hit[k])) hit[k].face = PLM_NO_HIT;
+    }
+}
+
+static void cast_packets(const plm_rays *rays, const plm_ray_lanes *lanes, size_t count, plm_hit *hit)
 {
     struct RTCIntersectContext context;
+    struct RTCRayHit8 packet = {0};
+    int valid[PACKET] __attribute__((aligned(32)));
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (size_t k = 0; k < PACKET; k++) packet.ray.mask[k] = ~0u;
     for (size_t first = 0; first < count; first += PACKET) {
         const size_t here = count - first < PACKET ? count - first : PACKET;
-        struct RTCRayHit8 packet;
-        int valid[PACKET] __attribute__((aligned(32)));
-        load_packet(origin + first, direction + first, here, valid, &packet);
+        for (size_t k = 0; k < PACKET; k++) {
+            valid[k] = k < here ? -1 : 0;
+            packet.ray.tfar[k] = INFINITY;
+            packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        }
+        load_packet(lanes, first, here, &packet.ray);
         rtcIntersect8(valid, rays->scene, &context, &packet);
-        for (size_t k = 0; k < here; k++)
-            hit[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
-                                 ? (plm_hit){.face = PLM_NO_HIT}
-                                 : (plm_hit){packet.hit.primID[k], (double)packet.ray.tfar[k], (double)packet.hit.u[k],
-                                             (double)packet.hit.v[k]};
+        for (size_t k = 0; k < here; k++) {
+            plm_hit *made = &hit[first + k];
+            made->face = PLM_NO_HIT;
+            if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+            *made = (plm_hit){packet.hit.primID[k], (double)packet.ray.tfar[k], (double)packet.hit.u[k],
+                              (double)packet.hit.v[k]};
+        }
     }
+}
+
+void plm_rays_first_many(const plm_rays *rays, const plm_ray_lanes *lanes, size_t count, bool are_side_by_side,
+                         plm_hit *hit)
+{
+    if (are_side_by_side)
+        cast_packets(rays, lanes, count, hit);
+    else
+        cast_each(rays, lanes, count, hit);
 }
 
 bool plm_rays_blocked(const plm_rays *rays, const double from[3], const double to[3])

@@ -30,9 +30,17 @@ bool plm_rays_first(const plm_rays *rays, const double origin[3], const double d
 
 #define PLM_NO_HIT UINT32_MAX
 
-/** The same for many rays at once: hit[k].face is PLM_NO_HIT where ray k meets nothing. Rays that lie side by side in the arrays
- * should run side by side: eight go through the tree together. */
-void plm_rays_first_many(const plm_rays *rays, const double (*origin)[3], const double (*direction)[3], size_t count,
+/** Most rays that are cast at once. */
+enum { PLM_RAY_BATCH = 4096 };
+
+/** Rays to be cast together, in the floats that Embree works with. */
+typedef struct plm_ray_lanes {
+    float origin[3][PLM_RAY_BATCH], direction[3][PLM_RAY_BATCH];
+} plm_ray_lanes;
+
+/** First face of each of count rays; hit[k].face is PLM_NO_HIT where ray k meets nothing. are_side_by_side: rays that lie side by
+ * side in the arrays run side by side, so that eight are best led through the tree together; else each goes alone. */
+void plm_rays_first_many(const plm_rays *rays, const plm_ray_lanes *lanes, size_t count, bool are_side_by_side,
                          plm_hit *hit);
 
 /** True when a face lies between the two points (share 0.001 of the way kept off both ends). */

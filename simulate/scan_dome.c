@@ -1,10 +1,13 @@
 /* simulate/scan_dome.c: the laser-scanning paper's dome: 13 layers of 25 scanners on a hemisphere, each sending rays
  * into the cone that holds the scene; a point is the first hit of a ray. Also uniform sampling of the surface. */
 #include <math.h>
+#include <string.h>
 
 #include "cloud/linear.h"
 #include "simulate/random.h"
+#include "simulate/ray_order.h"
 #include "simulate/scan.h"
+#include "simulate/turn.h"
 
 size_t plm_dome_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3])
 {
@@ -23,21 +26,51 @@ size_t plm_dome_positions(const plm_stage_set *stage, const plm_scan_options *op
     return count;
 }
 
-/* Ray number k of a scanner: directions spread evenly over the cone that holds the target. The R2 sequence (M. Roberts,
- * The unreasonable effectiveness of quasirandom sequences, 2018), shifted at random for each scanner, fills it evenly.
- */
-static void ray_direction(const plm_stage_set *stage, const double from[3], uint64_t key, uint64_t k,
-                          double direction[3])
+/* One scanner, and rays of it that are cast together, in an order in which neighbours run side by side. */
+typedef struct dome_rays {
+    double from[3], axis[3], u[3], v[3];
+    double low; /* cosine of the cone's rim */
+    double shift[2];
+    float cone[PLM_RAY_BATCH], turn[PLM_RAY_BATCH];   /* share of the cone, share of the turn */
+    uint16_t order[PLM_RAY_BATCH], at[PLM_RAY_BATCH]; /* ray k of the batch stands at[k]-th in the order */
+    plm_ray_lanes lanes;
+    plm_hit hit[PLM_RAY_BATCH];
+} dome_rays;
+
+static void set_up(const plm_stage_set *stage, const double from[3], uint64_t key, dome_rays *rays)
 {
-    double axis[3], u[3], v[3];
-    for (int i = 0; i < 3; i++) axis[i] = stage->target[i] - from[i];
-    const double distance = plm_normalise(axis), sine = fmin(stage->target_radius / distance, 1);
-    plm_frame_of_axis(axis, u, v);
-    const double a = plm_uniform_at(key, 0) + 0.7548776662466927 * (double)k;
-    const double b = plm_uniform_at(key, 1) + 0.5698402909980532 * (double)k;
-    const double low = sqrt(1 - sine * sine), cosine = 1 - (1 - low) * (a - floor(a)), round = 2 * PLM_PI * b;
-    const double away = sqrt(fmax(1 - cosine * cosine, 0));
-    for (int i = 0; i < 3; i++) direction[i] = cosine * axis[i] + away * (cos(round) * u[i] + sin(round) * v[i]);
+    memcpy(rays->from, from, sizeof rays->from);
+    for (int i = 0; i < 3; i++) rays->axis[i] = stage->target[i] - from[i];
+    const double distance = plm_normalise(rays->axis), sine = fmin(stage->target_radius / distance, 1);
+    plm_frame_of_axis(rays->axis, rays->u, rays->v);
+    rays->low = sqrt(1 - sine * sine);
+    for (int i = 0; i < 2; i++) rays->shift[i] = plm_uniform_at(key, (uint64_t)i);
+}
+
+/* Casts rays [first, first + count): directions spread evenly over the cone that holds the target. The R2 sequence (M. Roberts,
+ * The unreasonable effectiveness of quasirandom sequences, 2018), shifted at random for each scanner, fills it evenly. */
+static void cast_batch(const plm_stage_set *stage, uint64_t first, size_t count, dome_rays *rays)
+{
+    for (size_t k = 0; k < count; k++) {
+        const double a = rays->shift[0] + 0.7548776662466927 * (double)(first + k);
+        const double b = rays->shift[1] + 0.5698402909980532 * (double)(first + k);
+        rays->cone[k] = (float)(a - floor(a));
+        rays->turn[k] = (float)(b - floor(b));
+    }
+    plm_ray_order(rays->cone, rays->turn, count, rays->order);
+    for (size_t at = 0; at < count; at++) {
+        const size_t k = rays->order[at];
+        float sine_round, cosine_round;
+        plm_turn_of(rays->turn[k], &sine_round, &cosine_round);
+        const double cosine = 1 - (1 - rays->low) * (double)rays->cone[k], away = sqrt(fmax(1 - cosine * cosine, 0));
+        const double x = away * (double)cosine_round, y = away * (double)sine_round;
+        for (int i = 0; i < 3; i++) {
+            rays->lanes.direction[i][at] = (float)(cosine * rays->axis[i] + x * rays->u[i] + y * rays->v[i]);
+            rays->lanes.origin[i][at] = (float)rays->from[i];
+        }
+        rays->at[k] = (uint16_t)at;
+    }
+    plm_rays_first_many(stage->rays, &rays->lanes, count, true, rays->hit);
 }
 
 /* All rays of scanner number s: hits to samples (where they are wanted) in the order of the rays. */
@@ -45,20 +78,29 @@ static plm_status cast_scanner(const plm_stage_set *stage, const plm_scan_option
                                size_t s, uint64_t rays, bool is_wanted, plm_samples *samples, size_t *hits,
                                plm_error *error)
 {
-    const uint64_t key = plm_key(options->seed, 1000 + s);
-    plm_status status = PLM_OK;
-    for (uint64_t k = 0; k < rays && status == PLM_OK; k++) {
-        double direction[3];
-        plm_hit hit;
-        plm_sample sample;
-        ray_direction(stage, from, key, k, direction);
-        if (!plm_rays_first(stage->rays, from, direction, 0, INFINITY, &hit)) continue;
-        *hits += hit.face < stage->plant_faces;
-        if (!is_wanted) continue;
-        for (int i = 0; i < 3; i++) sample.xyz[i] = (float)(from[i] + hit.t * direction[i]);
-        plm_sample_label(stage, hit.face, direction, options->seed, &sample);
-        status = plm_samples_add(samples, &sample, error);
+    dome_rays *batch = plm_alloc(1, sizeof *batch, error);
+    plm_status status = batch ? PLM_OK : PLM_E_MEMORY;
+    if (batch) set_up(stage, from, plm_key(options->seed, 1000 + s), batch);
+    for (uint64_t first = 0; first < rays && status == PLM_OK; first += PLM_RAY_BATCH) {
+        const size_t count = rays - first < PLM_RAY_BATCH ? (size_t)(rays - first) : PLM_RAY_BATCH;
+        cast_batch(stage, first, count, batch);
+        for (size_t k = 0; k < count && status == PLM_OK; k++) {
+            const size_t at = batch->at[k];
+            const plm_hit *hit = &batch->hit[at];
+            double direction[3];
+            plm_sample sample;
+            if (hit->face == PLM_NO_HIT) continue;
+            *hits += hit->face < stage->plant_faces;
+            if (!is_wanted) continue;
+            for (int i = 0; i < 3; i++) {
+                direction[i] = (double)batch->lanes.direction[i][at];
+                sample.xyz[i] = (float)(from[i] + hit->t * direction[i]);
+            }
+            plm_sample_label(stage, hit->face, direction, options->seed, &sample);
+            status = plm_samples_add(samples, &sample, error);
+        }
     }
+    plm_free(batch);
     return status;
 }
 
