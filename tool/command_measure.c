@@ -23,7 +23,9 @@ static const plm_option options[] = {
      .argument = "LIST",
      .help =
          "measure only these traits: names, or plant, stem, petiole, leaf for all of that level, separated by commas; "
-         "only what they need is run (default: all)",
+         "only what they need is run (default: all but absorbed_radiation and leaf_absorbed_radiation, which are run "
+         "only "
+         "where they are named)",
      .kind = PLM_OPTION_TEXT,
      .offset = offsetof(measure_settings, traits)},
     {.name = "ground",

@@ -1,6 +1,7 @@
 /* tool/measure_settings.c: from options of the command line to options of the library. */
 #include "tool/measure_settings.h"
 
+#include "tool/light_hook.h"
 #include "traits/plan.h"
 
 #include <string.h>
@@ -40,6 +41,7 @@ plm_status measure_options_of(const measure_settings *settings, plm_measure_opti
     made.effort = (plm_effort)settings->effort;
     made.habit = (plm_habit)settings->habit;
     made.seed = settings->seed;
+    made.light = light_hook;
     plm_plan plan;
     plm_status status = check_reading(&settings->reading, error);
     if (status == PLM_OK) status = parse_ground(settings->ground, &made, error);

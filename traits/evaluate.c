@@ -7,7 +7,7 @@
 #include <string.h>
 
 /** Needs that rest on organs. */
-static const unsigned needs_organs = PLM_NEEDS_ORGANS | PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS;
+static const unsigned needs_organs = PLM_NEEDS_ORGANS | PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS | PLM_NEEDS_LIGHT;
 
 /** One call to make: a trait of an organ (NULL: of the plant, or of a level that has no organ). */
 typedef struct call {

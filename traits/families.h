@@ -67,6 +67,10 @@ PLM_TRAIT_FUNCTION(plm_trait_hull_area);
 /* traits/plant_area.c */
 PLM_TRAIT_FUNCTION(plm_trait_projected_area);
 
+/* traits/plant_light.c */
+PLM_TRAIT_FUNCTION(plm_trait_absorbed_radiation);
+PLM_TRAIT_FUNCTION(plm_trait_leaf_absorbed_radiation);
+
 /* traits/plant_colour.c */
 PLM_TRAIT_FUNCTION(plm_trait_gli);
 PLM_TRAIT_FUNCTION(plm_trait_hue_mean);

@@ -183,6 +183,11 @@ static plm_status run_axes(plant_job *job, plm_error *error)
     return plm_scene_fit_axes(&job->scene, error);
 }
 
+static plm_status run_light(plant_job *job, plm_error *error)
+{
+    return plm_scene_light(&job->scene, error);
+}
+
 static plm_status run_traits(plant_job *job, plm_error *error)
 {
     return plm_evaluate(&job->scene, job->chosen, &job->draft->value, &job->draft->value_count, error);
@@ -194,7 +199,7 @@ static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error
     [PLM_STAGE_GROUND] = run_ground,     [PLM_STAGE_CLEAN] = run_clean,     [PLM_STAGE_FRAME] = run_frame,
     [PLM_STAGE_INDEX] = run_index,       [PLM_STAGE_SEGMENT] = run_segment, [PLM_STAGE_ORGANS] = run_organs,
     [PLM_STAGE_SURFACES] = run_surfaces, [PLM_STAGE_HULL] = run_hull,       [PLM_STAGE_SMOOTHNESS] = run_smoothness,
-    [PLM_STAGE_AXES] = run_axes,         [PLM_STAGE_TRAITS] = run_traits,
+    [PLM_STAGE_AXES] = run_axes,         [PLM_STAGE_LIGHT] = run_light,     [PLM_STAGE_TRAITS] = run_traits,
 };
 
 static double seconds_now(void)

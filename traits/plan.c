@@ -25,6 +25,7 @@ static const struct stage_row {
     [PLM_STAGE_AXES] = {"axes", PLM_NEEDS_AXIS},
     [PLM_STAGE_HULL] = {"hull", PLM_NEEDS_HULL},
     [PLM_STAGE_SMOOTHNESS] = {"smoothness", PLM_NEEDS_NEIGHBOURS},
+    [PLM_STAGE_LIGHT] = {"light", PLM_NEEDS_LIGHT},
     [PLM_STAGE_TRAITS] = {"traits", NEEDS_ALWAYS},
 };
 
@@ -32,6 +33,7 @@ static const struct stage_row {
 static const struct rests_row {
     unsigned need, on;
 } rests[] = {
+    {PLM_NEEDS_LIGHT, PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS},
     {PLM_NEEDS_SURFACE, PLM_NEEDS_ORGANS},
     {PLM_NEEDS_AXIS, PLM_NEEDS_ORGANS},
     {PLM_NEEDS_ORGANS, PLM_NEEDS_CLEAN | NEEDS_INDEX},
@@ -62,8 +64,8 @@ static plm_status choose_word(const char *word, bool *chosen, plm_error *error)
     const plm_trait *trait = plm_traits(&count);
     bool found = false;
     for (size_t i = 0; i < count; i++) {
-        if (strcmp(word, "all") && strcmp(word, trait[i].name) && strcmp(word, plm_level_name(trait[i].level)))
-            continue;
+        const bool is_of_many = !strcmp(word, "all") || !strcmp(word, plm_level_name(trait[i].level));
+        if (strcmp(word, trait[i].name) && !(is_of_many && !trait[i].on_request)) continue;
         chosen[i] = found = true;
     }
     if (found) return PLM_OK;
@@ -75,8 +77,8 @@ static plm_status choose_word(const char *word, bool *chosen, plm_error *error)
 plm_status plm_trait_choose(const char *list, bool *chosen, plm_error *error)
 {
     size_t count, words = 0;
-    plm_traits(&count);
-    for (size_t i = 0; i < count; i++) chosen[i] = list == NULL;
+    const plm_trait *trait = plm_traits(&count);
+    for (size_t i = 0; i < count; i++) chosen[i] = list == NULL && !trait[i].on_request;
     if (!list) return PLM_OK;
     for (const char *at = list; *at;) {
         at += strspn(at, ", ");
@@ -163,7 +165,9 @@ plm_status plm_plan_make(const plm_measure_options *options, unsigned attributes
             stage->name = stages[id].name;
             stage->runs = (made.needs & stages[id].needs) || stages[id].needs == NEEDS_ALWAYS;
             if (!stage->runs)
-                plm_plan_leave_out(&made, (plm_stage_id)id, "left out: no trait asked for needs it");
+                plm_plan_leave_out(&made, (plm_stage_id)id, "left out: %s",
+                                   id == PLM_STAGE_LIGHT ? "absorbed_radiation was not asked for by its name"
+                                                         : "no trait asked for needs it");
             else if (stages[id].needs == NEEDS_ALWAYS)
                 snprintf(stage->why, sizeof stage->why, "all traits asked for");
             else

@@ -16,6 +16,7 @@ typedef enum plm_stage_id {
     PLM_STAGE_AXES,
     PLM_STAGE_HULL,
     PLM_STAGE_SMOOTHNESS,
+    PLM_STAGE_LIGHT,
     PLM_STAGE_TRAITS,
     PLM_STAGE_COUNT
 } plm_stage_id;

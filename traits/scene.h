@@ -26,6 +26,7 @@ struct plm_organ {
     struct plm_midrib *midrib; /* leaves with a surface (traits/leaf_midrib.h); NULL where it has no petiole or stem */
     struct plm_axis *axis;     /* stems and petioles: the fitted centre line and radius (traits/axis.h); NULL else */
     char axis_reason[160];
+    double absorbed, absorbed_error; /* W; zero where it was not asked for */
 };
 
 struct plm_scene {
@@ -50,6 +51,8 @@ struct plm_scene {
     bool hull_is_sheet; /* too thin against the noise for a volume */
     const char *hull_method;
     double smoothness_mean, smoothness_sd, boundary_share; /* NAN where not measured */
+    double absorbed, absorbed_error;                       /* W */
+    char light_reason[160];                                /* why there is no light; "" where there is */
     plm_status hull_status;
     char hull_reason[160];
 };
@@ -82,6 +85,9 @@ plm_status plm_scene_leaf_mesh(const plm_scene *scene, plm_mesh *mesh, plm_error
  * do not determine is left for the traits to tell. */
 plm_status plm_scene_hull(plm_scene *scene, plm_error *error);
 plm_status plm_scene_smoothness(plm_scene *scene, plm_error *error);
+
+/** Lights the leaf surfaces, and stems and petioles as tubes (traits/plant_light.c). */
+plm_status plm_scene_light(plm_scene *scene, plm_error *error);
 
 void plm_scene_free(plm_scene *scene);
 

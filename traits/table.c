@@ -206,6 +206,17 @@ static const plm_trait traits[] = {
      .definition = "sum of the one-sided areas of all leaves",
      .source = "seedling paper, Eq. 22",
      .ontology = ""},
+    {.name = "absorbed_radiation",
+     .level = PLM_PLANT,
+     .unit = PLM_WATT,
+     .needs = PLM_NEEDS_LIGHT | PLM_NEEDS_ZENITH,
+     .measure = plm_trait_absorbed_radiation,
+     .definition =
+         "light that leaves, stems and petioles absorb under a sky of 72 directions that bring 1000 W/m2 in all, each "
+         "across itself; leaves reflect green and transmit a tenth (only where asked for by name)",
+     .source = "laser-scanning paper, section on light absorption",
+     .ontology = "",
+     .on_request = true},
     {.name = "leaf_area",
      .level = PLM_LEAF,
      .unit = PLM_SQUARE_CM,
@@ -298,6 +309,15 @@ static const plm_trait traits[] = {
      .definition = "d ln A / d ln alpha: relative change of the area per relative change of alpha",
      .source = "design",
      .ontology = ""},
+    {.name = "leaf_absorbed_radiation",
+     .level = PLM_LEAF,
+     .unit = PLM_WATT,
+     .needs = PLM_NEEDS_LIGHT | PLM_NEEDS_ZENITH,
+     .measure = plm_trait_leaf_absorbed_radiation,
+     .definition = "the leaf's part of absorbed_radiation (only where asked for by name)",
+     .source = "laser-scanning paper, section on light absorption",
+     .ontology = "",
+     .on_request = true},
     {.name = "stem_diameter",
      .level = PLM_STEM,
      .unit = PLM_MILLIMETRE,
@@ -390,7 +410,7 @@ static const struct unit_row {
 } units[PLM_UNIT_COUNT] = {
     [PLM_MILLIMETRE] = {"mm", 1e3}, [PLM_SQUARE_CM] = {"cm2", 1e4},
     [PLM_CUBIC_CM] = {"cm3", 1e6},  [PLM_DEGREE] = {"deg", 180 / 3.14159265358979323846},
-    [PLM_NUMBER] = {"1", 1},
+    [PLM_NUMBER] = {"1", 1},        [PLM_WATT] = {"W", 1},
 };
 
 const char *plm_unit_name(plm_unit unit)

@@ -26,12 +26,13 @@ typedef enum plm_unit {
     PLM_CUBIC_CM,
     PLM_DEGREE,
     PLM_NUMBER,
+    PLM_WATT,
     PLM_UNIT_COUNT
 } plm_unit;
 
-/** "mm", "cm2", "cm3", "deg" or "1". */
+/** "mm", "cm2", "cm3", "deg", "1" or "W". */
 PLM_API const char *plm_unit_name(plm_unit unit);
-/** What an SI value is multiplied by to be in the unit: 1000, 1e4, 1e6, 180 / pi or 1. */
+/** What an SI value is multiplied by to be in the unit: 1000, 1e4, 1e6, 180 / pi, 1 or 1. */
 PLM_API double plm_unit_factor(plm_unit unit);
 
 /** Stages that a trait needs; the plan runs no other. */
@@ -45,7 +46,8 @@ enum {
     PLM_NEEDS_HULL = 1 << 6,
     PLM_NEEDS_NEIGHBOURS = 1 << 7, /**< the fused neighbour pass */
     PLM_NEEDS_COLOUR = 1 << 8,
-    PLM_NEEDS_SAMPLING = 1 << 9 /**< spacing and noise of the plant */
+    PLM_NEEDS_SAMPLING = 1 << 9, /**< spacing and noise of the plant */
+    PLM_NEEDS_LIGHT = 1 << 10    /**< absorbed light of the surfaces */
 };
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;
@@ -76,6 +78,7 @@ typedef struct plm_trait {
     const char *definition;
     const char *source;   /**< paper and equation, or peer */
     const char *ontology; /**< Trait Ontology term, "" where there is none */
+    bool on_request;      /**< costs much: measured only where it is asked for by its name */
 } plm_trait;
 
 /** The table: count rows, in the order of the reports. Static storage. */
@@ -84,11 +87,17 @@ PLM_API const plm_trait *plm_traits(size_t *count);
 /** The row of a name, or NULL. */
 PLM_API const plm_trait *plm_trait_find(const char *name);
 
+/** Power that the faces of a mesh absorb, in watts: of each group of faces (face_group[f] is the group of triangle f, below
+ * group_count) and of all, with standard errors. z is up. Given by whoever has a ray tracer; none is known here. */
+typedef plm_status plm_light_function(const plm_mesh *mesh, const int32_t *face_group, size_t group_count,
+                                      uint64_t seed, double *group_power, double *group_std_error, double *power,
+                                      double *std_error, plm_error *error);
+
 typedef enum plm_effort { PLM_EFFORT_FAST = 0, PLM_EFFORT_BALANCED, PLM_EFFORT_PRECISE } plm_effort;
 
 /** Options of a measurement. Fill with plm_measure_defaults first. */
 typedef struct plm_measure_options {
-    const char *traits; /**< comma-separated names; NULL: all */
+    const char *traits; /**< comma-separated names; NULL: all but those that are on request */
     plm_up up;
     plm_ground_mode ground;
     double ground_height; /**< z in metres, with PLM_GROUND_HEIGHT */
@@ -99,7 +108,8 @@ typedef struct plm_measure_options {
     plm_effort effort;
     plm_habit habit;
     uint64_t seed;
-    bool is_splat; /**< the cloud holds gaussians (extent is set) */
+    bool is_splat;             /**< the cloud holds gaussians (extent is set) */
+    plm_light_function *light; /**< for absorbed_radiation; NULL: it is not applicable */
     /** Called at the start of each stage; NULL: no talk. */
     void (*progress)(const char *stage, void *user);
     void *progress_user;
