@@ -20,7 +20,7 @@ build: packages ## build the library and the program in build/release
 
 demo: build ## measure the example plants; the results are in demo/
 	@build/release/plantimeter measure examples/data/*.ply -o demo --force
-	@echo "The trait tables are demo/traits.csv and demo/plants.csv; pictures of what was measured are demo/*.png;"
+	@echo "Open demo/report.html in a browser. The trait tables are demo/traits.csv and demo/plants.csv; pictures are demo/*.png;"
 	@echo "labelled clouds (demo/*.labelled.ply) and leaf meshes (demo/*.leaves.ply) open in CloudCompare or MeshLab."
 
 test: build ## build and run every test

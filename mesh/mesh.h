@@ -78,6 +78,13 @@ PLM_API plm_status plm_leaf_surface_make(const float (*xyz)[3], size_t count, co
 
 PLM_API void plm_leaf_surface_free(plm_leaf_surface *surface);
 
+/** A mesh that looks like the given one with at most about `triangles` triangles, for showing: edges are collapsed where
+ * that moves the surface least (M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997), by
+ * OpenMesh. Areas change: never measure it. face_organ and origin are kept; corners that no triangle names are dropped.
+ * out is overwritten unfreed and the caller's. PLM_E_ARGUMENT (a triangle names a missing vertex), PLM_E_MEMORY,
+ * PLM_E_LIBRARY. */
+PLM_API plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, plm_mesh *out, plm_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -56,14 +56,6 @@ static void put_heading(sheet *s, const char *text)
     plm_canvas_box(s->canvas, s->x, s->y - 3, s->width, 1, rule);
 }
 
-/* "leaf_insertion_angle" as "leaf insertion angle". */
-static void readable(const char *name, char *out, size_t room)
-{
-    snprintf(out, room, "%s", name);
-    for (char *c = out; *c; c++)
-        if (*c == '_') *c = ' ';
-}
-
 static void estimate_text(const plm_trait_value *value, bool with_unit, char out[PLM_VALUE_ROOM])
 {
     const double factor = plm_unit_factor(value->trait->unit);
@@ -87,7 +79,7 @@ static void put_plant(sheet *s)
             continue;
         }
         char name[80], text[PLM_VALUE_ROOM];
-        readable(value->trait->name, name, sizeof name);
+        plm_readable_name(value->trait->name, name, sizeof name);
         estimate_text(value, true, text);
         put_text(s, s->x, name, ink, 0);
         put_right(s, s->x + s->width, text, ink);
@@ -132,7 +124,7 @@ static void put_column_names(sheet *s, plm_level level, const plm_trait *const *
     put_text(s, s->x, plm_level_name(level), faint, 0);
     for (int k = 0; k < count; k++) {
         char name[80], text[96];
-        readable(column[k]->name + prefix, name, sizeof name);
+        plm_readable_name(column[k]->name + prefix, name, sizeof name);
         snprintf(text, sizeof text, "%s, %s", name, plm_unit_name(column[k]->unit));
         put_right(s, s->x + s->width - (count - 1 - k) * (s->width - 40) / COLUMNS, text, faint);
     }

@@ -67,6 +67,16 @@ plm_status plm_results_read_traits(plm_results *results, const char *path, plm_e
 plm_status plm_results_add_empty(plm_results *results, const char *plant_id, size_t rank, json_t *record,
                                  plm_error *error);
 
+/** Adds the plants that a run.json (its root) records, still without their rows: those that were measured, and with_failed those
+ * that were not, with their reason. rank: gives a plant's rank; NULL: their order in the record. */
+plm_status plm_results_take_records(plm_results *results, const json_t *root, bool with_failed,
+                                    size_t (*rank)(const void *user, const char *plant_id), const void *user,
+                                    plm_error *error);
+
+/** Reads the results of a run from its folder: run.json (its root: out, may be NULL; the caller's) and traits.csv.
+ * PLM_E_READ, PLM_E_FORMAT; what was read is the caller's even then. */
+plm_status plm_results_read_folder(plm_results *results, const char *folder, json_t **root, plm_error *error);
+
 /** Gives a row its status, reason and method, copied into one block of its own. */
 plm_status plm_result_row_texts(plm_result_row *row, const char *status, const char *reason, const char *method,
                                 plm_error *error);

@@ -1,9 +1,10 @@
 /* reports/results_read.c: the rows of a traits.csv that an earlier run wrote, so that a batch goes on where it was ended.
  * Rows are written again from what is read: nine digits of a number survive that unchanged. */
 #include "reports/csv_table.h"
-#include "reports/results.h"
+#include "reports/run_json.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,5 +87,61 @@ plm_status plm_results_read_traits(plm_results *results, const char *path, plm_e
     if (status != PLM_OK) return status;
     status = read_table(results, &table, path, error);
     plm_table_free(&table);
+    return status;
+}
+
+/* ---- The folder of a run ------------------------------------------------------------------------------------------ */
+
+static plm_status take_record(plm_results *results, json_t *record, const char *id, size_t rank, plm_error *error)
+{
+    plm_status status = plm_results_add_empty(results, id, rank, json_incref(record), error);
+    if (status != PLM_OK) return status;
+    plm_result *plant = plm_results_find(results, id);
+    const json_t *place = json_object_get(record, "place");
+    if (place) {
+        plant->has_place = true;
+        plant->longitude = json_number_value(json_object_get(place, "longitude"));
+        plant->latitude = json_number_value(json_object_get(place, "latitude"));
+    }
+    const char *state = json_string_value(json_object_get(record, "status"));
+    if (!state || strcmp(state, "ok")) {
+        const char *reason = json_string_value(json_object_get(record, "reason"));
+        plant->failure = plm_strdup(reason ? reason : "not measured", error);
+        if (!plant->failure) status = PLM_E_MEMORY;
+    }
+    return status;
+}
+
+plm_status plm_results_take_records(plm_results *results, const json_t *root, bool with_failed,
+                                    size_t (*rank)(const void *user, const char *plant_id), const void *user,
+                                    plm_error *error)
+{
+    const json_t *plants = json_object_get(root, "plants");
+    plm_status status = PLM_OK;
+    for (size_t i = 0; i < json_array_size(plants) && status == PLM_OK; i++) {
+        json_t *record = json_array_get(plants, i);
+        const char *id = json_string_value(json_object_get(record, "plant_id"));
+        const char *state = json_string_value(json_object_get(record, "status"));
+        if (!id || !state || (strcmp(state, "ok") && !with_failed) || plm_results_find(results, id)) continue;
+        status = take_record(results, record, id, rank ? rank(user, id) : i, error);
+    }
+    return status;
+}
+
+plm_status plm_results_read_folder(plm_results *results, const char *folder, json_t **root, plm_error *error)
+{
+    char path[4096];
+    json_t *found = NULL;
+    if ((size_t)snprintf(path, sizeof path, "%s/traits.csv", folder) >= sizeof path)
+        return plm_fail(error, PLM_E_ARGUMENT, "the folder's name is too long");
+    snprintf(path, sizeof path, "%s/run.json", folder);
+    plm_status status = plm_run_json_read(path, &found, error);
+    if (status == PLM_OK) status = plm_results_take_records(results, found, true, NULL, NULL, error);
+    snprintf(path, sizeof path, "%s/traits.csv", folder);
+    if (status == PLM_OK) status = plm_results_read_traits(results, path, error);
+    if (root)
+        *root = found;
+    else
+        json_decref(found);
     return status;
 }

@@ -46,7 +46,7 @@ static size_t sequence_length(const unsigned char *text)
 }
 
 /* A text of the user's: names of files and fields may hold bytes that are no UTF-8; JSON may not. */
-static json_t *user_text(const char *text)
+json_t *plm_json_text(const char *text)
 {
     char *clean = plm_strdup(text, NULL);
     if (!clean) return NULL;
@@ -175,10 +175,10 @@ static json_t *warnings_json(const plm_run_plant *plant)
 {
     json_t *warnings = json_array();
     bool is_broken = false;
-    for (size_t i = 0; i < plant->warning_count; i++) append(warnings, &is_broken, user_text(plant->warning[i]));
+    for (size_t i = 0; i < plant->warning_count; i++) append(warnings, &is_broken, plm_json_text(plant->warning[i]));
     const plm_measurement *measurement = plant->report->measurement;
     for (size_t i = 0; measurement && i < measurement->warning_count; i++)
-        append(warnings, &is_broken, user_text(measurement->warning[i]));
+        append(warnings, &is_broken, plm_json_text(measurement->warning[i]));
     return finish_array(warnings, is_broken);
 }
 
@@ -186,7 +186,7 @@ static json_t *files_json(const plm_run_plant *plant)
 {
     json_t *files = json_array();
     bool is_broken = false;
-    for (size_t i = 0; i < plant->file_count; i++) append(files, &is_broken, user_text(plant->file[i]));
+    for (size_t i = 0; i < plant->file_count; i++) append(files, &is_broken, plm_json_text(plant->file[i]));
     return finish_array(files, is_broken);
 }
 
@@ -203,7 +203,7 @@ static json_t *unit_json(const plm_run_plant *plant)
 {
     builder b = begin_object();
     set(&b, "metres_per_unit", number(plant->metres_per_unit));
-    set(&b, "evidence", user_text(plant->unit_evidence));
+    set(&b, "evidence", plm_json_text(plant->unit_evidence));
     return finish(&b);
 }
 
@@ -222,14 +222,14 @@ plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_e
     const plm_plant_report *report = plant->report;
     const plm_measurement *measurement = report->measurement;
     builder b = begin_object();
-    set(&b, "plant_id", user_text(report->plant_id));
-    set(&b, "input", user_text(plant->input));
+    set(&b, "plant_id", plm_json_text(report->plant_id));
+    set(&b, "input", plm_json_text(plant->input));
     set(&b, "sha256", json_string(plant->sha256));
     set(&b, "status", json_string(measurement ? "ok" : "failed"));
-    if (report->failure) set(&b, "reason", user_text(report->failure));
+    if (report->failure) set(&b, "reason", plm_json_text(report->failure));
     if (plant->read) {
-        set(&b, "format", user_text(plant->read->description));
-        set(&b, "fields", user_text(plant->read->fields));
+        set(&b, "format", plm_json_text(plant->read->description));
+        set(&b, "fields", plm_json_text(plant->read->fields));
         set(&b, "rows", json_integer((json_int_t)plant->read->rows));
         set(&b, "points", json_integer((json_int_t)plant->point_count));
         set(&b, "dropped", dropped_json(plant->read));
@@ -277,20 +277,24 @@ static json_t *root_json(json_t *options, const plm_results *results)
     return finish(&b);
 }
 
+plm_status plm_json_write(const char *path, const json_t *object, plm_error *error)
+{
+    plm_status status = plm_json_check(object, error);
+    dump d = {.error = error};
+    if (status == PLM_OK) status = plm_output_open(path, &d.output, error);
+    if (status != PLM_OK) return status;
+    if (json_dump_callback(object, dump_bytes, &d, DUMP_FLAGS) != 0)
+        status = d.status != PLM_OK ? d.status : plm_json_check(NULL, error);
+    if (status == PLM_OK) status = plm_output_write(d.output, "\n", 1, error);
+    const plm_status closed = plm_output_close(d.output, status == PLM_OK, error);
+    return status == PLM_OK ? closed : status;
+}
+
 plm_status plm_run_json_write(const char *path, json_t *options, const plm_results *results, plm_error *error)
 {
     plm_json_use_seam();
     json_t *root = root_json(options, results);
-    plm_status status = plm_json_check(root, error);
-    dump d = {.error = error};
-    if (status == PLM_OK) status = plm_output_open(path, &d.output, error);
-    if (status == PLM_OK) {
-        if (json_dump_callback(root, dump_bytes, &d, DUMP_FLAGS) != 0)
-            status = d.status != PLM_OK ? d.status : plm_json_check(NULL, error);
-        if (status == PLM_OK) status = plm_output_write(d.output, "\n", 1, error);
-        const plm_status closed = plm_output_close(d.output, status == PLM_OK, error);
-        if (status == PLM_OK) status = closed;
-    }
+    const plm_status status = plm_json_write(path, root, error);
     json_decref(root);
     return status;
 }
@@ -321,17 +325,17 @@ static json_t *row_json(const plm_result_row *row)
     set(&b, "std_error", number(is_ok ? row->std_error : NAN));
     set(&b, "n_points", json_integer((json_int_t)row->point_count));
     set(&b, "status", json_string(row->status));
-    set(&b, "reason", user_text(row->reason));
-    set(&b, "method", user_text(row->method));
+    set(&b, "reason", plm_json_text(row->reason));
+    set(&b, "method", plm_json_text(row->method));
     return finish(&b);
 }
 
 static json_t *plant_json(const plm_result *plant)
 {
     builder b = begin_object();
-    set(&b, "plant_id", user_text(plant->plant_id));
+    set(&b, "plant_id", plm_json_text(plant->plant_id));
     set(&b, "status", json_string(plant->failure ? "failed" : "ok"));
-    set(&b, "reason", user_text(plant->failure ? plant->failure : ""));
+    set(&b, "reason", plm_json_text(plant->failure ? plant->failure : ""));
     if (plant->has_place) {
         set(&b, "longitude", number(plant->longitude));
         set(&b, "latitude", number(plant->latitude));

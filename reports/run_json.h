@@ -37,6 +37,12 @@ plm_status plm_run_json_read(const char *path, json_t **root, plm_error *error);
 /** The results as one object for `--json`: version, plants with their values. The caller's. */
 plm_status plm_results_json(const plm_results *results, json_t **object, plm_error *error);
 
+/** A text of the user's as a JSON string, bytes that are no UTF-8 replaced; the caller's, NULL without memory. */
+json_t *plm_json_text(const char *text);
+
+/** Writes an object to a file (plm_output), nine digits a number. NULL: what jansson could not make, PLM_E_MEMORY. */
+plm_status plm_json_write(const char *path, const json_t *object, plm_error *error);
+
 /** Fails with PLM_E_MEMORY where object is NULL: what jansson could not make. */
 plm_status plm_json_check(const json_t *object, plm_error *error);
 

@@ -20,3 +20,10 @@ const char *plm_value_text(double value, double std_error, const char *unit, cha
     if (*unit && strcmp(unit, "1")) snprintf(out + length, PLM_VALUE_ROOM - length, " %s", unit);
     return out;
 }
+
+void plm_readable_name(const char *name, char *out, size_t room)
+{
+    snprintf(out, room, "%s", name);
+    for (char *c = out; *c; c++)
+        if (*c == '_') *c = ' ';
+}

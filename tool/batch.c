@@ -60,8 +60,9 @@ static plm_status name_plants(batch *open, char *const *input, size_t count, plm
 }
 
 /* Place of a plant in the tables: plants that are no input of this run come first. */
-static size_t rank_of(const batch *open, const char *id)
+static size_t rank_of(const void *user, const char *id)
 {
+    const batch *open = user;
     for (size_t i = 0; i < open->input_count; i++)
         if (!strcmp(open->plant_id[i], id)) return i + 1;
     return 0;
@@ -109,27 +110,6 @@ static plm_status check_options(const batch *open, const json_t *root, const cha
     return PLM_OK;
 }
 
-/* Takes the plants that were measured over, still without their rows. */
-static plm_status take_records(batch *open, const json_t *root, plm_error *error)
-{
-    const json_t *plants = json_object_get(root, "plants");
-    plm_status status = PLM_OK;
-    for (size_t i = 0; i < json_array_size(plants) && status == PLM_OK; i++) {
-        json_t *record = json_array_get(plants, i);
-        const char *id = json_string_value(json_object_get(record, "plant_id"));
-        const char *state = json_string_value(json_object_get(record, "status"));
-        if (!id || !state || strcmp(state, "ok") || plm_results_find(&open->results, id)) continue;
-        status = plm_results_add_empty(&open->results, id, rank_of(open, id), json_incref(record), error);
-        const json_t *place = json_object_get(record, "place");
-        if (status != PLM_OK || !place) continue;
-        plm_result *plant = plm_results_find(&open->results, id);
-        plant->has_place = true;
-        plant->longitude = json_number_value(json_object_get(place, "longitude"));
-        plant->latitude = json_number_value(json_object_get(place, "latitude"));
-    }
-    return status;
-}
-
 /* Results without run.json are of somebody else, or of a run that was killed before its first save: those come without
  * tables. */
 static plm_status read_folder(batch *open, plm_error *error)
@@ -145,7 +125,7 @@ static plm_status read_folder(batch *open, plm_error *error)
     json_t *root = NULL;
     status = plm_run_json_read(record, &root, error);
     if (status == PLM_OK) status = check_options(open, root, open->folder, error);
-    if (status == PLM_OK) status = take_records(open, root, error);
+    if (status == PLM_OK) status = plm_results_take_records(&open->results, root, false, rank_of, open, error);
     if (status == PLM_OK && open->results.count) status = plm_results_read_traits(&open->results, traits, error);
     json_decref(root);
     if (status == PLM_E_FORMAT || status == PLM_E_READ) { /* not the input's fault */

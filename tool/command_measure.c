@@ -1,4 +1,5 @@
 /* tool/command_measure.c: the `measure` sub-command. Options in, a library call a plant, tables out; no geometry. */
+#include "reports/report.h"
 #include "reports/run_json.h"
 #include "tool/measure_settings.h"
 #include "tool/plant_run.h"
@@ -12,9 +13,9 @@ static const plm_option options[] = {
     {.letter = 'o',
      .name = "output",
      .argument = "DIR",
-     .help =
-         "write traits.csv, plants.csv, run.json, and PLANT.labelled.ply, PLANT.leaves.ply and PLANT.png of each plant "
-         "into this folder (default: write nothing)",
+     .help = "write traits.csv, plants.csv, run.json, report.html, and PLANT.labelled.ply, PLANT.leaves.ply and "
+             "PLANT.png of "
+             "each plant into this folder (default: write nothing)",
      .kind = PLM_OPTION_TEXT,
      .offset = offsetof(measure_settings, output),
      .changes_nothing = true},
@@ -83,6 +84,14 @@ static const plm_option options[] = {
      .help = "what -o writes: all, or only traits.csv, plants.csv and run.json (default: all)",
      .kind = PLM_OPTION_CHOICE,
      .offset = offsetof(measure_settings, files)},
+    {.name = "views",
+     .argument = "N",
+     .help = "plants with a 3D view in report.html: the first N (default: 20)",
+     .kind = PLM_OPTION_INTEGER,
+     .offset = offsetof(measure_settings, views),
+     .minimum = 0,
+     .maximum = 1000000,
+     .changes_nothing = true},
     {.letter = 'f',
      .name = "force",
      .help = "measure anew what the folder holds already",
@@ -162,6 +171,7 @@ static plm_status run_batch(const measure_settings *settings, plm_measure_option
     const plant_run_options run = {.reading = &settings->reading,
                                    .measure = measure,
                                    .with_files = settings->output && settings->files == 0,
+                                   .views = (size_t)settings->views,
                                    .quiet = settings->quiet};
     plm_status status = plm_options_json(&plm_command_measure, (void *)settings, &recorded, error);
     if (status != PLM_OK) return status;
@@ -173,6 +183,11 @@ static plm_status run_batch(const measure_settings *settings, plm_measure_option
         progress_end(&line);
     }
     if (status == PLM_OK) status = batch_save(&open, error);
+    if (status == PLM_OK && run.with_files) {
+        bool has_view;
+        const plm_report_options page = {.views = run.views};
+        status = plm_report_write(settings->output, &page, &has_view, error);
+    }
     if (status == PLM_OK && tally->skipped && !settings->quiet)
         fprintf(stderr, "plantimeter: %zu of %zu plants were measured before; --force measures them again\n",
                 tally->skipped, count);
@@ -205,7 +220,8 @@ const plm_command plm_command_measure = {
                    "Its file name "
                    "becomes the plant's name. traits.csv has a row for each trait of each organ, with unit, standard "
                    "error and status; "
-                   "plants.csv has a row for each plant; run.json records what was read and what was run.\n\n"
+                   "plants.csv has a row for each plant; run.json records what was read and what was run; report.html "
+                   "shows it all on one page.\n\n"
                    "A batch that was ended goes on where it was: plants that the folder holds already, from the same "
                    "bytes and with the "
                    "same options, are not measured again. One bad file does not stop the others; its row says why.",

@@ -1,6 +1,7 @@
 /* tool/measure_settings.c: from options of the command line to options of the library. */
 #include "tool/measure_settings.h"
 
+#include "reports/report.h"
 #include "tool/light_hook.h"
 #include "traits/plan.h"
 
@@ -14,6 +15,7 @@ measure_settings measure_setting_defaults(void)
                               .neighbours = library.neighbours,
                               .effort = (int)library.effort,
                               .seed = library.seed,
+                              .views = PLM_REPORT_VIEWS,
                               .reading.minimum_opacity = 0.005};
 }
 

@@ -3,13 +3,14 @@
 
 #include "reports/plant_files.h"
 #include "reports/run_json.h"
+#include "reports/view_file.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 
-enum { FILES = 3, WARNINGS = 2, LONGEST_PATH = 4096 };
+enum { FILES = 4, WARNINGS = 2, LONGEST_PATH = 4096 };
 
 /** Where a plant's run stands; what is in it is freed by free_state. */
 typedef struct plant_state {
@@ -83,8 +84,8 @@ static void note_file(plant_state *state, const char *path)
     snprintf(state->file[state->record.file_count++], sizeof *state->file, "%.300s", slash ? slash + 1 : path);
 }
 
-static plm_status write_files(const batch *open, size_t input, const plm_plant_report *report, plant_state *state,
-                              plm_error *error)
+static plm_status write_files(const batch *open, size_t input, const plm_plant_report *report, bool with_view,
+                              plant_state *state, plm_error *error)
 {
     const plm_measurement *measurement = &state->measurement;
     plm_input_frame frame = {.xyz = (const float(*)[3])state->loaded.original,
@@ -105,6 +106,10 @@ static plm_status write_files(const batch *open, size_t input, const plm_plant_r
     }
     if (status == PLM_OK) status = batch_path(open, input, ".png", path, sizeof path, error);
     if (status == PLM_OK) status = plm_write_picture(path, report, error);
+    if (status == PLM_OK) note_file(state, path);
+    if (status != PLM_OK || !with_view) return status;
+    status = batch_path(open, input, ".view.json", path, sizeof path, error);
+    if (status == PLM_OK) status = plm_write_view(path, report->plant_id, measurement, NULL, error);
     if (status == PLM_OK) note_file(state, path);
     return status;
 }
@@ -145,7 +150,8 @@ plm_status run_plant(batch *open, size_t input, const char *path, const char *sh
     if (!options->quiet) tell_warnings(&state, report.plant_id);
     plm_status status = PLM_OK;
     const double begin = seconds_now();
-    if (state.is_measured && options->with_files) status = write_files(open, input, &report, &state, error);
+    if (state.is_measured && options->with_files)
+        status = write_files(open, input, &report, input < options->views, &state, error);
     state.record.write_seconds = seconds_now() - begin;
     state.record.write_peak_bytes = peak_bytes();
     json_t *record = NULL;

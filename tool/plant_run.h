@@ -10,6 +10,7 @@ typedef struct plant_run_options {
     const reading_settings *reading;
     const plm_measure_options *measure;
     bool with_files; /* labelled cloud, meshes and picture too */
+    size_t views;    /* and of so many first inputs what the report's 3D view shows */
     bool quiet;
 } plant_run_options;
 

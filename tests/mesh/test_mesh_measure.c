@@ -152,6 +152,39 @@ static void meshes_without_area_or_with_wrong_indices_say_so(void **unused)
     plm_mesh_free(&mesh);
 }
 
+/* A flat rectangle of 800 triangles needs few: its area stays, and every triangle keeps its organ. Fewer than the rim needs are made
+ * as well, from the rim. */
+static void decimation_keeps_a_flat_surface_and_its_organs(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    const double place[3] = {1, 2, 3};
+    plm_mesh mesh = rectangle(2, 1, plm_radians(30), 1, place, 20), fewer;
+    mesh.face_organ = plm_alloc(mesh.triangle_count, sizeof *mesh.face_organ, &error);
+    for (size_t i = 0; i < mesh.triangle_count; i++) mesh.face_organ[i] = 7;
+    assert_ok(plm_mesh_decimate(&mesh, 100, &fewer, &error));
+    double area = 0;
+    assert_ok(plm_mesh_area(&fewer, &area, &error));
+    assert_near(area, 2, 1e-9);
+    assert_true(fewer.triangle_count <= 100 && fewer.triangle_count >= 2);
+    for (size_t i = 0; i < fewer.triangle_count; i++) assert_int_equal(fewer.face_organ[i], 7);
+    plm_mesh_free(&fewer);
+    assert_ok(plm_mesh_decimate(&mesh, 20, &fewer, &error));
+    assert_true(fewer.triangle_count <= 20 && fewer.triangle_count >= 2);
+    plm_mesh_free(&fewer);
+    /* Three triangles at one edge are no surface; they are shown all the same. */
+    memcpy(mesh.triangle[0], (uint32_t[3]){0, 1, 2}, sizeof *mesh.triangle);
+    memcpy(mesh.triangle[1], (uint32_t[3]){1, 0, 30}, sizeof *mesh.triangle);
+    memcpy(mesh.triangle[2], (uint32_t[3]){0, 1, 50}, sizeof *mesh.triangle);
+    mesh.triangle_count = 3;
+    assert_ok(plm_mesh_decimate(&mesh, 100, &fewer, &error));
+    assert_int_equal(fewer.triangle_count, 3);
+    plm_mesh_free(&fewer);
+    mesh.triangle[0][0] = 1000000;
+    assert_int_equal(plm_mesh_decimate(&mesh, 100, &fewer, &error), PLM_E_ARGUMENT);
+    plm_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -160,6 +193,7 @@ int main(void)
         cmocka_unit_test(small_triangles_are_not_lost_beside_large_ones),
         cmocka_unit_test(sphere_of_triangles_has_equal_moments_and_looks_up),
         cmocka_unit_test(meshes_without_area_or_with_wrong_indices_say_so),
+        cmocka_unit_test(decimation_keeps_a_flat_surface_and_its_organs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

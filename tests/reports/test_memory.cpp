@@ -4,7 +4,9 @@ extern "C" {
 #include "support/test.h"
 
 #include "reports/plant_files.h"
+#include "reports/report.h"
 #include "reports/run_json.h"
+#include "reports/view_file.h"
 }
 
 #include <dirent.h>
@@ -93,10 +95,10 @@ struct paths {
     explicit paths(const std::string &folder)
         : input(folder + "/plant.csv"), labelled(folder + "/plant.labelled.ply"), leaves(folder + "/plant.leaves.ply"),
           picture(folder + "/plant.png"), traits(folder + "/traits.csv"), plants(folder + "/plants.csv"),
-          record(folder + "/run.json")
+          record(folder + "/run.json"), view(folder + "/plant.view.json"), home(folder)
     {
     }
-    std::string input, labelled, leaves, picture, traits, plants, record;
+    std::string input, labelled, leaves, picture, traits, plants, record, view, home;
 };
 
 /** What is repeated, each time with another allocation that fails. */
@@ -180,6 +182,32 @@ plm_status write_tables(const paths &files, plm_error *error)
     return status;
 }
 
+plm_status write_view(const paths &files, plm_error *error)
+{
+    return plm_write_view(files.view.c_str(), "plant", &measured, nullptr, error);
+}
+
+/* The page from tables, picture and view that are there. */
+plm_status write_page(const paths &files, plm_error *error)
+{
+    const plm_report_options options = {nullptr, 1};
+    bool has_view;
+    return plm_report_write(files.home.c_str(), &options, &has_view, error);
+}
+
+plm_status write_all_and_page(const paths &files, plm_error *error)
+{
+    static bool is_written; /* the first call is without failures */
+    if (!is_written) {
+        plm_status status = write_tables(files, error);
+        if (status == PLM_OK) status = write_picture(files, error);
+        if (status == PLM_OK) status = write_view(files, error);
+        if (status != PLM_OK) return status;
+        is_written = true;
+    }
+    return write_page(files, error);
+}
+
 /* Files that were not finished. */
 int count_parts(const std::string &folder)
 {
@@ -260,6 +288,16 @@ void allocations_of_the_picture_may_fail(void **)
     fail_task(write_picture, true, usual_growth());
 }
 
+void allocations_of_the_view_may_fail(void **)
+{
+    fail_task(write_view, true, usual_growth());
+}
+
+void allocations_of_the_page_may_fail(void **)
+{
+    fail_task(write_all_and_page, true, usual_growth());
+}
+
 void allocations_of_the_cloud_and_the_meshes_may_fail(void **)
 {
     fail_task(write_cloud_and_meshes, true, usual_growth());
@@ -277,6 +315,8 @@ int main()
         cmocka_unit_test(allocations_of_measuring_a_labelled_plant_may_fail),
         cmocka_unit_test(allocations_of_segmenting_may_fail),
         cmocka_unit_test(allocations_of_the_picture_may_fail),
+        cmocka_unit_test(allocations_of_the_view_may_fail),
+        cmocka_unit_test(allocations_of_the_page_may_fail),
         cmocka_unit_test(allocations_of_the_cloud_and_the_meshes_may_fail),
         cmocka_unit_test(allocations_of_the_tables_may_fail),
     };
