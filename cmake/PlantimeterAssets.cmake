@@ -16,6 +16,7 @@ endfunction()
 set(page ${PROJECT_SOURCE_DIR}/reports/page)
 plantimeter_asset(style ${page}/report.css)
 plantimeter_asset(viewer ${page}/viewer.js)
+plantimeter_asset(ontology ${PROJECT_SOURCE_DIR}/reports/data/ontology.csv)
 set(three ${PLANTIMETER_THREE_FOLDER}/build/three.min.js
           ${PLANTIMETER_THREE_FOLDER}/examples/js/controls/OrbitControls.js)
 list(GET three 0 core)

@@ -52,6 +52,9 @@ void plm_results_remove(plm_results *results, plm_result *plant);
 
 void plm_results_free(plm_results *results);
 
+/** Name of a trait's column in wide tables: "plant_height_mm", "leaf_count". */
+void plm_trait_column(const plm_trait *trait, char *name, size_t room);
+
 /** Whether the row holds a value. */
 bool plm_result_row_is_ok(const plm_result_row *row);
 

@@ -94,6 +94,12 @@ plm_status plm_results_write_traits(const plm_results *results, const char *path
 
 /* ---- plants.csv ------------------------------------------------------------------------------------------------ */
 
+void plm_trait_column(const plm_trait *trait, char *name, size_t room)
+{
+    const bool has_unit = trait->unit != PLM_NUMBER;
+    snprintf(name, room, "%s%s%s", trait->name, has_unit ? "_" : "", has_unit ? plm_unit_name(trait->unit) : "");
+}
+
 /* Whether any plant has a row of the trait: a column is there for all plants or for none. */
 static bool is_column(const plm_results *results, const plm_trait *trait)
 {
@@ -114,9 +120,7 @@ static void put_plant_header(sheet *s, const plm_trait *traits, size_t count, co
     put_text(s, "plant_id", ',');
     for (size_t i = 0; i < count; i++) {
         char name[128];
-        const bool has_unit = traits[i].unit != PLM_NUMBER;
-        snprintf(name, sizeof name, "%s%s%s", traits[i].name, has_unit ? "_" : "",
-                 has_unit ? plm_unit_name(traits[i].unit) : "");
+        plm_trait_column(&traits[i], name, sizeof name);
         if (column[i]) put_text(s, name, ',');
     }
     put_text(s, "leaf_count", ',');

@@ -3,6 +3,7 @@
 extern "C" {
 #include "support/test.h"
 
+#include "reports/export.h"
 #include "reports/plant_files.h"
 #include "reports/report.h"
 #include "reports/run_json.h"
@@ -195,17 +196,38 @@ plm_status write_page(const paths &files, plm_error *error)
     return plm_report_write(files.home.c_str(), &options, &has_view, error);
 }
 
-plm_status write_all_and_page(const paths &files, plm_error *error)
+/* What a run leaves in its folder, once; the first call is without failures. */
+plm_status write_run(const paths &files, plm_error *error)
 {
-    static bool is_written; /* the first call is without failures */
-    if (!is_written) {
-        plm_status status = write_tables(files, error);
-        if (status == PLM_OK) status = write_picture(files, error);
-        if (status == PLM_OK) status = write_view(files, error);
-        if (status != PLM_OK) return status;
-        is_written = true;
-    }
-    return write_page(files, error);
+    static std::string written;
+    if (written == files.home) return PLM_OK;
+    plm_status status = write_tables(files, error);
+    if (status == PLM_OK) status = write_picture(files, error);
+    if (status == PLM_OK) status = write_view(files, error);
+    if (status == PLM_OK) written = files.home;
+    return status;
+}
+
+plm_status write_run_and_page(const paths &files, plm_error *error)
+{
+    const plm_status status = write_run(files, error);
+    return status == PLM_OK ? write_page(files, error) : status;
+}
+
+plm_status write_run_and_exports(const paths &files, plm_error *error)
+{
+    plm_status status = write_run(files, error);
+    const plm_export_options options = {};
+    plm_export run = {};
+    const char *folder = files.home.c_str();
+    if (status == PLM_OK) status = plm_export_open(&run, folder, &options, error);
+    if (status == PLM_OK) status = plm_export_field_book(&run, folder, error);
+    if (status == PLM_OK) status = plm_export_brapi(&run, folder, error);
+    if (status == PLM_OK) status = plm_export_miappe(&run, folder, error);
+    if (status == PLM_OK) status = plm_export_frictionless(&run, folder, error);
+    if (status == PLM_OK) status = plm_export_statgen(&run, folder, error);
+    plm_export_close(&run);
+    return status;
 }
 
 /* Files that were not finished. */
@@ -295,7 +317,12 @@ void allocations_of_the_view_may_fail(void **)
 
 void allocations_of_the_page_may_fail(void **)
 {
-    fail_task(write_all_and_page, true, usual_growth());
+    fail_task(write_run_and_page, true, usual_growth());
+}
+
+void allocations_of_the_exports_may_fail(void **)
+{
+    fail_task(write_run_and_exports, true, usual_growth());
 }
 
 void allocations_of_the_cloud_and_the_meshes_may_fail(void **)
@@ -317,6 +344,7 @@ int main()
         cmocka_unit_test(allocations_of_the_picture_may_fail),
         cmocka_unit_test(allocations_of_the_view_may_fail),
         cmocka_unit_test(allocations_of_the_page_may_fail),
+        cmocka_unit_test(allocations_of_the_exports_may_fail),
         cmocka_unit_test(allocations_of_the_cloud_and_the_meshes_may_fail),
         cmocka_unit_test(allocations_of_the_tables_may_fail),
     };
