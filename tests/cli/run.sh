@@ -20,7 +20,8 @@ PATH=$work/bin:$PATH
 LC_ALL=C
 EXAMPLES=$source/examples/data
 LIB=$here/lib
-export PATH LC_ALL EXAMPLES LIB
+OMP_WAIT_POLICY=passive # tests run side by side: threads that wait must not spin
+export PATH LC_ALL EXAMPLES LIB OMP_WAIT_POLICY
 failed=0
 for name in "$@"; do
     mkdir "$work/$name"
