@@ -114,8 +114,20 @@ static const plm_option options[] = {
 /** A batch under way, and what became of its plants. */
 typedef struct batch_tally {
     size_t failed, skipped;
+    size_t first_failed; /* its place among the inputs */
     plm_status first_failure;
 } batch_tally;
+
+/* Counts a failed plant and says why. */
+static void tell_failure(batch *open, size_t input, plm_status failure, batch_tally *count)
+{
+    if (count->failed++ == 0 || input < count->first_failed) {
+        count->first_failed = input;
+        count->first_failure = failure;
+    }
+    const plm_result *plant = plm_results_find(&open->results, open->plant_id[input]);
+    fprintf(stderr, "plantimeter: %s: failed: %s\n", open->plant_id[input], plant ? plant->failure : "not recorded");
+}
 
 /* One input: measured, unless an earlier run did it. */
 static plm_status take_input(batch *open, size_t input, const char *path, const plant_run_options *run,
@@ -124,18 +136,59 @@ static plm_status take_input(batch *open, size_t input, const char *path, const 
     char sha256[65] = "";
     if (strcmp(path, "-") && open->folder && plm_file_sha256(path, sha256, NULL) != PLM_OK) sha256[0] = 0;
     bool has = false;
-    plm_status status = batch_has(open, input, sha256, &has, error);
-    if (status != PLM_OK) return status;
-    if (has) {
-        count->skipped++;
-        return PLM_OK;
+    plm_status status;
+#pragma omp critical(plm_batch)
+    {
+        status = batch_has(open, input, sha256, &has, error);
+        if (has) count->skipped++;
     }
+    if (status != PLM_OK || has) return status;
     plm_status plant_status = PLM_OK;
     status = run_plant(open, input, path, sha256, run, &plant_status, error);
-    if (plant_status == PLM_OK) return status;
-    if (count->failed++ == 0) count->first_failure = plant_status;
-    const plm_result *plant = plm_results_find(&open->results, open->plant_id[input]);
-    fprintf(stderr, "plantimeter: %s: failed: %s\n", open->plant_id[input], plant ? plant->failure : "not recorded");
+#pragma omp critical(plm_batch)
+    if (plant_status != PLM_OK) tell_failure(open, input, plant_status, count);
+    return status;
+}
+
+/* Clouds, meshes and pictures beside the tables. */
+static bool writes_files(const measure_settings *settings)
+{
+    return settings->output && settings->files == 0;
+}
+
+/* Plants of a large batch are measured side by side, a thread each; of few plants each gets all threads. Either way the
+ * tables have the order of the inputs. */
+static plm_status take_inputs(batch *open, const measure_settings *settings, const plm_measure_options *measure,
+                              char *const *input, size_t count, batch_tally *tally, plm_error *error)
+{
+    const bool side_by_side = count >= 2 * (size_t)omp_get_max_threads();
+    plm_status status = PLM_OK;
+#pragma omp parallel for schedule(dynamic, 1) if (side_by_side)
+    for (size_t i = 0; i < count; i++) {
+        plm_status before;
+#pragma omp atomic read
+        before = status;
+        if (before != PLM_OK) continue; /* the batch has ended */
+        progress_line line = progress_begin(settings->quiet);
+        line = (progress_line){line.is_shown, open->plant_id[i], i + 1, count};
+        plm_measure_options mine = *measure;
+        mine.progress = progress_stage;
+        mine.progress_user = &line;
+        const plant_run_options run = {.reading = &settings->reading,
+                                       .measure = &mine,
+                                       .with_files = writes_files(settings),
+                                       .views = (size_t)settings->views,
+                                       .quiet = settings->quiet};
+        plm_error trouble = {0};
+        const plm_status found = take_input(open, i, input[i], &run, tally, &trouble);
+#pragma omp critical(plm_batch)
+        if (found != PLM_OK && status == PLM_OK) {
+            *error = trouble;
+#pragma omp atomic write
+            status = found;
+        }
+        progress_end(&line);
+    }
     return status;
 }
 
@@ -160,32 +213,20 @@ static int exit_code(const batch_tally *count, size_t inputs)
     return count->failed < inputs ? PLM_EXIT_SOME_FAILED : (int)plm_exit_of(count->first_failure);
 }
 
-static plm_status run_batch(const measure_settings *settings, plm_measure_options *measure, char *const *input,
+static plm_status run_batch(const measure_settings *settings, const plm_measure_options *measure, char *const *input,
                             size_t count, batch_tally *tally, plm_error *error)
 {
     json_t *recorded = NULL;
     batch open;
-    progress_line line = progress_begin(settings->quiet);
-    measure->progress = progress_stage;
-    measure->progress_user = &line; /* used during this call only */ // cppcheck-suppress autoVariables
-    const plant_run_options run = {.reading = &settings->reading,
-                                   .measure = measure,
-                                   .with_files = settings->output && settings->files == 0,
-                                   .views = (size_t)settings->views,
-                                   .quiet = settings->quiet};
     plm_status status = plm_options_json(&plm_command_measure, (void *)settings, &recorded, error);
     if (status != PLM_OK) return status;
     status = batch_open(&open, settings->output, recorded, settings->force, input, count, error);
     if (status != PLM_OK) return status;
-    for (size_t i = 0; i < count && status == PLM_OK; i++) {
-        line = (progress_line){line.is_shown, open.plant_id[i], i + 1, count};
-        status = take_input(&open, i, input[i], &run, tally, error);
-        progress_end(&line);
-    }
+    status = take_inputs(&open, settings, measure, input, count, tally, error);
     if (status == PLM_OK) status = batch_save(&open, error);
-    if (status == PLM_OK && run.with_files) {
+    if (status == PLM_OK && writes_files(settings)) {
         bool has_view;
-        const plm_report_options page = {.views = run.views};
+        const plm_report_options page = {.views = (size_t)settings->views};
         status = plm_report_write(settings->output, &page, &has_view, error);
     }
     if (status == PLM_OK && tally->skipped && !settings->quiet)

@@ -156,7 +156,10 @@ plm_status run_plant(batch *open, size_t input, const char *path, const char *sh
     state.record.write_peak_bytes = peak_bytes();
     json_t *record = NULL;
     if (status == PLM_OK) status = plm_run_plant_json(&state.record, &record, error);
-    if (status == PLM_OK) status = batch_add(open, input, &report, record, error);
+    if (status == PLM_OK) {
+#pragma omp critical(plm_batch)
+        status = batch_add(open, input, &report, record, error);
+    }
     free_state(&state);
     return status;
 }
