@@ -6,6 +6,7 @@ cp made/pepper_3_clean.ply cloud.ply
 cp cloud.ply night/
 # What a user has of his own: readings of the same plant and organs.
 plantimeter measure night/*.ply -o own -q
+printf "plant_id,variety\ncloud,bell\n" >plants_in_field.csv
 cp -r own last_week
 awk -F, 'NR == 1 { print "plant_id,organ,organ_id,trait,value,unit" }
     $7 == "leaf_area" && $8 != "" { print $1 "," $2 "," $3 "," $7 "," $8 * 1.02 "," $9 }' own/traits.csv >manual.csv
