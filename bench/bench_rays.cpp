@@ -5,8 +5,8 @@
 
 extern "C" {
 #include "cloud/linear.h"
+#include "cloud/random.h"
 #include "simulate/light_rays.h"
-#include "simulate/random.h"
 #include "simulate/rays.h"
 #include "simulate/scan.h"
 }

@@ -48,10 +48,14 @@ static plm_status check_point(const plm_crs *crs, const double point[3], size_t 
             "longitude, y is latitude)",
             row + 1, point[0], point[1]);
     }
-    if (point[0] > 0 && point[0] < 1e6 && point[1] >= 0 && point[1] <= 1e7) return PLM_OK;
-    return plm_fail(error, PLM_E_ARGUMENT,
-                    "point %zu: easting %.9g and northing %.9g; 0 to 1000000 and 0 to 10000000 m were expected of UTM",
-                    row + 1, point[0], point[1]);
+    /* UTM ends at 84 degrees north and 80 south, and GeographicLib half a degree and more beyond. */
+    const double low = crs->is_south ? 9e5 : 0, high = crs->is_south ? 1e7 : 9.6e6;
+    if (point[0] > 0 && point[0] < 1e6 && point[1] >= low && point[1] <= high) return PLM_OK;
+    return plm_fail(
+        error, PLM_E_ARGUMENT,
+        "point %zu: easting %.9g and northing %.9g; 0 to 1000000 and %.0f to %.0f m were expected of UTM %s "
+        "of the equator",
+        row + 1, point[0], point[1], low, high, crs->is_south ? "south" : "north");
 }
 
 /** Points that one thread converts at a time. */

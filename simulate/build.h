@@ -5,9 +5,9 @@
 #ifndef PLANTIMETER_SIMULATE_BUILD_H
 #define PLANTIMETER_SIMULATE_BUILD_H
 
+#include "cloud/random.h"
 #include "simulate/blade.h"
 #include "simulate/curve.h"
-#include "simulate/random.h"
 #include "simulate/simulate.h"
 
 /** Radius of a tube along its axis: base to tip by a power of the share of the length, wider at the base by flare

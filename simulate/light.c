@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "cloud/linear.h"
+#include "cloud/random.h"
 #include "simulate/light_rays.h"
-#include "simulate/random.h"
 
 enum { PARTS = 16, MAXIMUM_DEPTH = 100 };
 

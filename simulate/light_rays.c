@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/turn.h"
 
 /* Number i of ray k of a source, in [0, 1): the R5 sequence (M. Roberts, 2018: powers of the root of x^6 = x + 1), shifted. */

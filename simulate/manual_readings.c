@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/simulate.h"
 
 /* The growing table; remembers that memory ran out. */

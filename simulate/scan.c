@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 
 /* ---- Samples ---------------------------------------------------------------------------------------------------- */
 

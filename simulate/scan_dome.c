@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/ray_order.h"
 #include "simulate/scan.h"
 #include "simulate/turn.h"

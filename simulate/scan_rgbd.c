@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/view.h"
 
 /* A pixel on its way into a voxel. Sorted by voxel, then by the order in which the pixels were seen. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/scan.h"
 
 size_t plm_splat_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3])

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 #include "simulate/scan.h"
 
 /* ---- Pot, soil and table ---------------------------------------------------------------------------------------- */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "simulate/random.h"
+#include "cloud/random.h"
 
 size_t plm_ring_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3])
 {

@@ -306,6 +306,19 @@ static void free_job(plant_job *job)
     plm_cloud_free(&job->work);
 }
 
+/* Readers drop what is no number; a program that hands over a cloud may not have. */
+static plm_status check_points(const plm_cloud *cloud, plm_error *error)
+{
+    if (cloud->count == 0) return plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points");
+    for (size_t i = 0; i < cloud->count; i++) {
+        const float *at = cloud->xyz[i];
+        if (isfinite(at[0]) && isfinite(at[1]) && isfinite(at[2])) continue;
+        return plm_fail(error, PLM_E_ARGUMENT, "point %zu of the cloud is (%g, %g, %g); coordinates must be finite", i,
+                        (double)at[0], (double)at[1], (double)at[2]);
+    }
+    return PLM_OK;
+}
+
 plm_status plm_measure(plm_cloud *cloud, const plm_measure_options *options, plm_measurement *measurement,
                        plm_error *error)
 {
@@ -314,8 +327,7 @@ plm_status plm_measure(plm_cloud *cloud, const plm_measure_options *options, plm
     *cloud = (plm_cloud){0};
     size_t trait_count;
     plm_traits(&trait_count);
-    plm_status status = PLM_OK;
-    if (draft.cloud.count == 0) status = plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points");
+    plm_status status = check_points(&draft.cloud, error);
     if (status == PLM_OK) status = plm_plan_make(options, plm_cloud_attributes(&draft.cloud), &draft.plan, error);
     if (status == PLM_OK && !(job.chosen = plm_alloc(trait_count, sizeof *job.chosen, error))) status = PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_trait_choose(options->traits, job.chosen, error);

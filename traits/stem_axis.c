@@ -20,8 +20,13 @@ static const double end_shape = 0.1; /* radii by which an end's shape leaves the
 /* Share of the noise that lies along the tube: depth noise is seen from the side, splats' noise is normal to it. */
 static const double noise_along = 0.7;
 
-/* Direction of largest extent of the points, upwards, and their centroid. */
-static bool principal(const plm_tube_points *points, double centroid[3], double direction[3])
+/* Variance along a stem over that across it, from which there is a direction: a tube's own is L^2 / 6 r^2, so a stem that
+ * is less than three radii long has none. */
+static const double longer_than_wide = 1.5;
+
+/* Direction of largest extent of the points, upwards, and their centroid. Gives how much more variance there is along it
+ * than across; 0 where all points coincide. */
+static double principal(const plm_tube_points *points, double centroid[3], double direction[3])
 {
     double moment[6] = {0}, value[3], vector[3][3];
     memset(centroid, 0, 3 * sizeof *centroid);
@@ -34,9 +39,9 @@ static bool principal(const plm_tube_points *points, double centroid[3], double 
             for (int b = a; b < 3; b++) moment[m++] += d[a] * d[b];
     }
     plm_eigen3(moment, value, vector);
-    if (!(value[0] > 0)) return false;
+    if (!(value[0] > 0)) return 0;
     for (int k = 0; k < 3; k++) direction[k] = vector[0][2] < 0 ? -vector[0][k] : vector[0][k];
-    return true;
+    return value[1] > 0 ? value[0] / value[1] : INFINITY;
 }
 
 /* Ends of the chord: mean places of the lowest and highest 3 % of the points along the direction. */
@@ -115,6 +120,7 @@ static plm_status find_ends(const plm_tube_points *points, double reach, plm_axi
         axis->begin = plm_curve_walk(&axis->line, 0, -lower.position);
         axis->end = plm_curve_walk(&axis->line, 0, upper.position);
         axis->length = upper.position + lower.position;
+        if (!(axis->length > 0)) status = plm_fail(error, PLM_E_DEGENERATE, "the stem's points have no length");
         axis->length_error = hypot(hypot(lower.std_error, upper.std_error), end_shape * axis->radius);
         axis->point_count = count;
     }
@@ -151,7 +157,10 @@ static void complete(plm_axis *axis)
 static plm_status fit(const plm_scene *scene, const plm_tube_points *points, plm_axis *axis, plm_error *error)
 {
     double centroid[3], direction[3], ends[2][3];
-    if (!principal(points, centroid, direction)) return plm_fail(error, PLM_E_DEGENERATE, "all points coincide");
+    const double elongation = principal(points, centroid, direction);
+    if (!(elongation > 0)) return plm_fail(error, PLM_E_DEGENERATE, "all points coincide");
+    if (elongation < longer_than_wide)
+        return plm_fail(error, PLM_E_DEGENERATE, "the stem's points are about as wide as they are long");
     plm_status status = chord(points, centroid, direction, ends, error);
     plm_centre_line line;
     if (status == PLM_OK) status = centroids(points, ends, &line, error);

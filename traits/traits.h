@@ -192,7 +192,8 @@ typedef struct plm_measurement {
 
 /** Measures one plant. cloud: metres, any up axis; labels in it (label not NULL) are used instead of segmenting. It is
  * taken over: the call leaves it empty and the measurement owns its points, turned to z up.
- * PLM_E_DEGENERATE  an empty cloud; everything short of that gives traits with reasons. */
+ * PLM_E_DEGENERATE  an empty cloud; everything short of that gives traits with reasons.
+ * PLM_E_ARGUMENT    a coordinate that is NaN or infinite, an unknown trait. */
 PLM_API plm_status plm_measure(plm_cloud *cloud, const plm_measure_options *options, plm_measurement *measurement,
                                plm_error *error);
 

@@ -18,7 +18,10 @@ static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflat
 static const double thick_noise = 0.3, very_thick_noise = 0.45;
 static const double model_error = 0.0015;   /* facets, roundness: share of the diameter */
 static const double fit_error_factor = 1.3; /* residuals of neighbouring points are alike */
-static const double unresolved = 4;         /* diameter over spread below which the ring is no longer resolved */
+static const double unresolved = 4; /* diameter over spread below which the ring is no longer resolved: a thin rod and a
+                                               short arc of a thick one look alike then */
+static const double unresolved_error =
+    0.15; /* share of the diameter that is left open then: measured on virtual petioles */
 
 void plm_tube_deflate(double fit, double fit_error, double spread, bool fused, double *diameter, double *std_error)
 {
@@ -94,7 +97,10 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
                                 "(seen from %.0f %% of the directions)",
                                 100 * tube.coverage);
     plm_tube_deflate(fit, 2 * fit_error, tube.spread, scene->sampling.fused, &out->value, &out->std_error);
-    if (out->value < unresolved * tube.spread) out->flags |= PLM_FLAG_LOW_DENSITY;
+    if (out->value < unresolved * tube.spread) {
+        out->flags |= PLM_FLAG_LOW_DENSITY;
+        out->std_error = hypot(out->std_error, unresolved_error * out->value);
+    }
     if (tube.coverage < 0.6) {
         out->flags |= PLM_FLAG_OCCLUDED;
         out->std_error = hypot(out->std_error, 0.1 * out->value * (1 - tube.coverage));

@@ -1,8 +1,8 @@
-/* simulate/random.h: random numbers as a function of (key, index): any thread may ask for any of them, and the answer
+/* cloud/random.h: random numbers as a function of (key, index): any thread may ask for any of them, and the answer
  * never depends on who asked before. SplitMix64's finaliser over key and index (Steele, Lea and Flood, 2014). Internal.
  */
-#ifndef PLANTIMETER_SIMULATE_RANDOM_H
-#define PLANTIMETER_SIMULATE_RANDOM_H
+#ifndef PLANTIMETER_CLOUD_RANDOM_H
+#define PLANTIMETER_CLOUD_RANDOM_H
 
 #include <math.h>
 #include <stdint.h>
