@@ -52,19 +52,9 @@ const char *plm_export_germplasm(const plm_export *bundle, const char *plant_id)
 
 /* ---- Variables --------------------------------------------------------------------------------------------------- */
 
-static bool is_exported(const plm_trait *trait)
-{
-    return trait->level == PLM_PLANT || !strcmp(trait->name, "stem_diameter") || !strcmp(trait->name, "stem_length");
-}
-
 const plm_result_row *plm_export_row(const plm_result *plant, const plm_export_variable *variable)
 {
-    const int32_t organ = variable->trait->level == PLM_PLANT ? -1 : 0;
-    for (size_t i = 0; i < plant->row_count; i++) {
-        const plm_result_row *row = &plant->row[i];
-        if (row->trait == variable->trait && row->organ_id == organ) return plm_result_row_is_ok(row) ? row : NULL;
-    }
-    return NULL;
+    return plm_result_of_plant(plant, variable->trait);
 }
 
 /* The cell of a trait: the user's table first, then the shipped one; "" where both lack it. */
@@ -129,7 +119,7 @@ static plm_status find_variables(plm_export *bundle, plm_error *error)
     if (!bundle->variable) return PLM_E_MEMORY;
     for (size_t i = 0; i < count; i++) {
         plm_export_variable *made = &bundle->variable[bundle->variable_count];
-        if (!is_exported(&traits[i])) continue;
+        if (!plm_trait_of_plant(&traits[i])) continue;
         const plm_status status = describe(bundle, &traits[i], made, error);
         if (status != PLM_OK) return status;
         bool has_value = false;

@@ -155,6 +155,21 @@ const plm_result_row *plm_result_find(const plm_result *plant, const char *trait
     return NULL;
 }
 
+bool plm_trait_of_plant(const plm_trait *trait)
+{
+    return trait->level == PLM_PLANT || !strcmp(trait->name, "stem_diameter") || !strcmp(trait->name, "stem_length");
+}
+
+const plm_result_row *plm_result_of_plant(const plm_result *plant, const plm_trait *trait)
+{
+    const int32_t organ = trait->level == PLM_PLANT ? -1 : 0;
+    for (size_t i = 0; i < plant->row_count; i++) {
+        const plm_result_row *row = &plant->row[i];
+        if (row->trait == trait && row->organ_id == organ) return plm_result_row_is_ok(row) ? row : NULL;
+    }
+    return NULL;
+}
+
 void plm_results_remove(plm_results *results, plm_result *plant)
 {
     free_result(plant);

@@ -52,6 +52,12 @@ void plm_results_remove(plm_results *results, plm_result *plant);
 
 void plm_results_free(plm_results *results);
 
+/** Whether the trait is told of whole plants: of level plant, or of the main stem (diameter and length). */
+bool plm_trait_of_plant(const plm_trait *trait);
+
+/** The row of such a trait (organ 0 of a stem's trait) where it holds a value, or NULL. */
+const plm_result_row *plm_result_of_plant(const plm_result *plant, const plm_trait *trait);
+
 /** Name of a trait's column in wide tables: "plant_height_mm", "leaf_count". */
 void plm_trait_column(const plm_trait *trait, char *name, size_t room);
 

@@ -12,6 +12,7 @@ static const plm_command *const commands[] = {
     &plm_command_compare,  //
     &plm_command_report,   //
     &plm_command_export,   //
+    &plm_command_series,   //
     &plm_command_simulate, //
     &plm_command_light,    //
     &plm_command_study,    //
