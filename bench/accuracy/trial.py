@@ -138,6 +138,16 @@ def interval(row, digits):
     return f" ({float(row['ci_low']):.{digits}f} to {float(row['ci_high']):.{digits}f})"
 
 
+def main_stems(folder):
+    """The diameters of main stems alone: n, R2, RMSE, rRMSE, MAPE, bias."""
+    with open(os.path.join(folder, "agreement", "pairs.csv")) as file:
+        rows = [r for r in csv.DictReader(file) if r["trait"] == "stem_diameter" and r["organ"] == "stem"]
+    p, m = (np.array([float(r[side]) for r in rows]) for side in ("estimate", "manual"))
+    rmse = math.sqrt(np.mean((p - m) ** 2))
+    return (len(rows), 1 - np.sum((p - m) ** 2) / np.sum((m - m.mean()) ** 2), rmse, rmse / m.mean() * 100,
+            np.mean(np.abs(p - m) / m) * 100, np.mean(p - m))
+
+
 def write_table(folder, missed, seen):
     found = agreement(folder)
     lines = ["| trait | n | R2 (95 % interval) | RMSE | rRMSE % | MAPE % | bias | R2, paper | RMSE, paper | rRMSE %, paper | MAPE %, paper |",
@@ -151,6 +161,8 @@ def write_table(folder, missed, seen):
             r2 = f"{mine[0]:.3f}" + interval(found[trait, "r2"], 3)
             lines.append(f"| {name} | {count} | {r2} | {mine[1]:.2f} {unit} | {mine[2]:.2f} | {mine[3]:.2f} | {mine[4]:+.2f} | "
                          f"{paper[0]} | {paper[1]} {unit} | {paper[2]} | {paper[3]} |")
+    n, *of_stems = main_stems(folder)
+    lines.append("| of these, main stems | {} | {:.3f} | {:.2f} mm | {:.2f} | {:.2f} | {:+.2f} | | | | |".format(n, *of_stems))
     told = ", ".join(f"{missed.get(organ, 0)} of {seen[organ]} {plural}" for organ, plural in
                      (("leaf", "leaves"), ("petiole", "petioles")))
     lines += ["", f"Not found by the program, of what the cameras see to at least a half: {told}."]

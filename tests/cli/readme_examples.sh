@@ -8,6 +8,7 @@ cp cloud.ply night/
 plantimeter measure night/*.ply -o own -q
 printf "plant_id,variety\ncloud,bell\n" >plants_in_field.csv
 cp -r own last_week
+printf "run,date\nlast_week,2026-05-02\nresults,2026-05-09\n" >dates.csv
 awk -F, 'NR == 1 { print "plant_id,organ,organ_id,trait,value,unit" }
     $7 == "leaf_area" && $8 != "" { print $1 "," $2 "," $3 "," $7 "," $8 * 1.02 "," $9 }' own/traits.csv >manual.csv
 # Fewer plants, rays and steps than the README's; else what a test does would take a night.

@@ -53,7 +53,7 @@ done
 for switch in points 'leaf surfaces' 'convex hull'; do
     grep -q "^$switch switches" found.txt || fail "$(cat found.txt)"
 done
-area=$(awk -F, '$2 == "leaf" && $3 == 2 && $7 == "leaf_area" { printf "%.0f", $8 }' run/traits.csv)
+area=$(awk -F, '$2 == "leaf" && $3 == 2 && $7 == "leaf_area" { print int($8) }' run/traits.csv)
 grep -q "row: leaf 2area cm2$area" found.txt || fail "the row of leaf 2 does not tell its area, $area cm2: $(cat found.txt)"
 # Without JavaScript, here forbidden by the page's policy, it is drawn all the same (an empty page makes some 10 kB).
 sed "s/script-src 'unsafe-inline'/script-src 'none'/" run/report.html >run/plain.html
