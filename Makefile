@@ -1,6 +1,6 @@
 # Plantimeter: one word a job. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test asan fuzz bench docs format tidy clean
+.PHONY: help packages build demo test reduced asan fuzz bench docs format tidy clean
 JOBS ?= $(shell nproc)
 # Goals that `make bench` measures: BENCH=all, BENCH=P1,P9; BENCH_CSV=FILE appends the rows to a file.
 BENCH ?= P1,P9,P10,P12
@@ -46,6 +46,9 @@ docs: build ## build the API reference in build/docs (no warnings allowed) and r
 
 format: packages ## format every source file
 	@git ls-files '*.c' '*.h' '*.cpp' '*.hpp' | xargs clang-format -i
+
+reduced: packages ## build without virtual plants and georeferencing, and check that it says so
+	@sh tests/house/reduced.sh $(CURDIR)
 
 tidy: packages ## static analysis
 	@sh tests/house/tidy.sh

@@ -7,7 +7,7 @@ set(headers include/plantimeter)
 file(WRITE ${PROJECT_BINARY_DIR}/generated/plantimeter.h
      "/* plantimeter.h: the whole public interface of Plantimeter ${PROJECT_VERSION}. */\n#pragma once\n")
 foreach(module cloud io segment mesh traits reports simulate selftest)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/${module}/${module}.h)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${module}/${module}.h AND TARGET plm_${module})
     install(FILES ${PROJECT_SOURCE_DIR}/${module}/${module}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/plantimeter/${module})
     file(APPEND ${PROJECT_BINARY_DIR}/generated/plantimeter.h "#include \"${module}/${module}.h\"\n")
   endif()

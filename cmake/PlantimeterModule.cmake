@@ -1,5 +1,5 @@
-# plantimeter_module(NAME DEPENDS modules... USES libraries...): one folder of sources as an object library. Sources are
-# globbed (re-checked at each build), so that adding a file is adding a file.
+# plantimeter_module(NAME DEPENDS modules... USES libraries... [WITHOUT sources... INSTEAD sources...]): one folder of sources
+# as an object library. Sources are globbed (re-checked at each build), so that adding a file is adding a file.
 find_package(OpenMP REQUIRED COMPONENTS C CXX)
 
 set(PLANTIMETER_C_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes
@@ -27,8 +27,11 @@ function(plantimeter_compile target)
 endfunction()
 
 function(plantimeter_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;USES;WITHOUT;INSTEAD" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.c ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  list(TRANSFORM ARG_WITHOUT PREPEND ${PROJECT_SOURCE_DIR}/)
+  list(REMOVE_ITEM sources "" ${ARG_WITHOUT})
+  list(APPEND sources ${ARG_INSTEAD})
   if(NOT sources)
     file(WRITE ${PROJECT_BINARY_DIR}/generated/empty_${name}.c "typedef int plm_${name}_is_empty;\n")
     set(sources ${PROJECT_BINARY_DIR}/generated/empty_${name}.c)
@@ -68,8 +71,20 @@ endfunction()
 
 function(plantimeter_program folder)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.c)
+  set(left_out)
+  if(NOT PLANTIMETER_SIMULATE)
+    list(FILTER sources EXCLUDE REGEX "/(command_simulate|command_light|command_study|light_run|light_hook|study_.*)\\.c$")
+    list(APPEND sources ${PROJECT_SOURCE_DIR}/${folder}/left_out/simulate.c)
+    list(APPEND left_out "simulate")
+  endif()
+  if(NOT PLANTIMETER_GEOREFERENCE)
+    list(APPEND left_out "georeference")
+  endif()
+  list(JOIN left_out ", " left_out)
   add_executable(plantimeter ${sources})
   plantimeter_compile(plantimeter)
+  target_compile_definitions(plantimeter PRIVATE PLM_LEFT_OUT="${left_out}"
+                                                 $<$<NOT:$<BOOL:${PLANTIMETER_SIMULATE}>>:PLM_WITHOUT_LIGHT>)
   target_link_libraries(plantimeter PRIVATE plantimeter_static OpenMP::OpenMP_C PkgConfig::JANSSON)
   set_target_properties(plantimeter PROPERTIES LINKER_LANGUAGE CXX RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endfunction()

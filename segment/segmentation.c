@@ -93,6 +93,12 @@ static plm_status result_leaflets(plm_segmentation *out, plm_error *error)
     return PLM_OK;
 }
 
+/* A caller who knows that there is no stem spares the search for one. */
+static bool may_have_stem(plm_habit habit)
+{
+    return habit != PLM_HABIT_ROSETTE && habit != PLM_HABIT_HEAD && habit != PLM_HABIT_SINGLE_LEAF;
+}
+
 plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
                        const plm_segment_options *options, plm_segmentation *result, plm_error *error)
 {
@@ -113,8 +119,8 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     }
     status = plm_sketch_make((const float(*)[3])xyz, count, options->point_budget, &sketch, error);
     if (status == PLM_OK) status = plm_sketch_tidy(&sketch, error);
-    if (status == PLM_OK) status = plm_sketch_stem(&sketch, error);
-    if (status == PLM_OK) status = plm_sketch_stem_end(&sketch, error);
+    if (status == PLM_OK && may_have_stem(options->habit)) status = plm_sketch_stem(&sketch, error);
+    if (status == PLM_OK && sketch.stem.count > 0) status = plm_sketch_stem_end(&sketch, error);
     if (status == PLM_OK) status = plm_sketch_leaves(&sketch, options->habit, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
     if (status != PLM_OK) goto done;

@@ -43,7 +43,9 @@ plm_status measure_options_of(const measure_settings *settings, plm_measure_opti
     made.effort = (plm_effort)settings->effort;
     made.habit = (plm_habit)settings->habit;
     made.seed = settings->seed;
+#ifndef PLM_WITHOUT_LIGHT
     made.light = light_hook;
+#endif
     plm_plan plan;
     plm_status status = check_reading(&settings->reading, error);
     if (status == PLM_OK) status = parse_ground(settings->ground, &made, error);

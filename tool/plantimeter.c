@@ -20,6 +20,7 @@ int main(int argc, char **argv)
     }
     if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V")) {
         puts("plantimeter " PLM_VERSION);
+        if (PLM_LEFT_OUT[0]) puts("left out of this build: " PLM_LEFT_OUT);
         return close_output(PLM_EXIT_GOOD);
     }
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h")) {

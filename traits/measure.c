@@ -222,7 +222,7 @@ static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
     if (job->options->progress) job->options->progress(stage->name, job->options->progress_user);
     const double begin = seconds_now();
     const plm_status status = run[id](job, error);
-    stage->seconds = seconds_now() - begin;
+    if (stage->runs) stage->seconds = seconds_now() - begin; /* it may have found that there is nothing to do */
     stage->peak_bytes = peak_bytes();
     return status;
 }
