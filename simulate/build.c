@@ -135,8 +135,8 @@ static void cap(plm_builder *builder, const plm_curve *axis, double s, double ra
 void plm_build_tube(plm_builder *builder, const plm_curve *axis, const plm_taper *taper, double from, double to)
 {
     const double thick = plm_taper_at(taper, 0.5 * (from + to), axis->length);
-    const int sides = plm_build_steps(builder, 24, 4);
-    const int rings = plm_build_steps(builder, fmin(fmax((to - from) / (1.2 * thick), 12), 160), 2);
+    const int sides = plm_build_steps(builder, 24, 3);
+    const int rings = plm_build_steps(builder, fmin(fmax((to - from) / (1.2 * thick), 12), 160), 1);
     uint32_t before = 0;
     for (int k = 0; k <= rings && builder->status == PLM_OK; k++) {
         const double s = from + (to - from) * k / rings;

@@ -10,6 +10,7 @@ typedef struct tomato {
     double rachis;             /* length of petiole and rachis of a full leaf, m */
     int pairs_low, pairs_high; /* of leaflets */
     int truss[2];              /* ranks that carry one; -1: none */
+    double slim[2];            /* range of the largest leaflet's length over that of the rachis */
 } tomato;
 
 static void draw_leaflet(plm_random *random, const plm_disposition *habit, double length, bool is_last,
@@ -105,7 +106,7 @@ static void grow_tomato(plm_builder *builder, const tomato *kind)
 {
     plm_random *random = &builder->random;
     const plm_disposition habit = plm_draw_disposition(random);
-    const double slim = plm_between(random, 0.27, 0.42);
+    const double slim = plm_between(random, kind->slim[0], kind->slim[1]);
     double node[PLM_TRUE_NODES_MAXIMUM];
     plm_curve axis;
     plm_draw_stem(random, kind->height, 8, &axis);
@@ -134,7 +135,8 @@ void plm_grow_tomato(plm_builder *builder)
                           .rachis = plm_between(random, 0.11, 0.2) * (0.5 + height),
                           .pairs_low = 2,
                           .pairs_high = 3,
-                          .truss = {-1, -1}};
+                          .truss = {-1, -1},
+                          .slim = {0.27, 0.42}};
     grow_tomato(builder, &young);
 }
 
@@ -144,10 +146,11 @@ void plm_grow_tomato_large(plm_builder *builder)
     const tomato grown = {.height = 1.62,
                           .stem_radius = plm_between(random, 0.0055, 0.007),
                           .leaves = 21,
-                          .rachis = plm_between(random, 0.29, 0.33),
-                          .pairs_low = 3,
-                          .pairs_high = 4,
-                          .truss = {4, 6}};
+                          .rachis = plm_between(random, 0.25, 0.28),
+                          .pairs_low = 6,
+                          .pairs_high = 6,
+                          .truss = {4, 6},
+                          .slim = {0.42, 0.48}};
     grow_tomato(builder, &grown);
 }
 

@@ -68,7 +68,7 @@ void plm_grow_cucumber_large(plm_builder *builder)
     enum { LEAVES = 17 };
     plm_random *random = &builder->random;
     const plm_disposition habit = plm_draw_disposition(random);
-    const double height = 1.9, radius = plm_between(random, 0.0045, 0.006), length = plm_between(random, 0.17, 0.2);
+    const double height = 1.98, radius = plm_between(random, 0.0045, 0.006), length = plm_between(random, 0.17, 0.2);
     const double depth = plm_between(random, 0.05, 0.2);
     const plm_taper taper = {.base = radius, .tip = 0.6 * radius, .power = 1.2};
     double node[PLM_TRUE_NODES_MAXIMUM];
@@ -84,7 +84,7 @@ void plm_grow_cucumber_large(plm_builder *builder)
         plm_blade_spec *blade = &leaf.blade;
         leaf.azimuth = azimuth + habit.handed * k * plm_radians(144) + plm_draw_angle(random, -15, 15);
         leaf.zenith = plm_draw_angle(random, 50, 66) - youth * plm_draw_angle(random, 10, 25);
-        leaf.petiole_length = length * size * plm_between(random, 0.85, 1.15);
+        leaf.petiole_length = 1.55 * length * size * plm_between(random, 0.85, 1.15);
         leaf.petiole_radius = 0.5 * radius;
         leaf.petiole_tip_radius = 0.4 * radius;
         leaf.petiole_bend.pitch = plm_draw_angle(random, 0, 20);

@@ -7,6 +7,7 @@ typedef struct maize {
     int leaves;
     double leaf_length, leaf_width; /* of the largest, m */
     double spread;                  /* radians added to the leaves' angle */
+    double limpness;                /* of the leaves' bend; 1 in young plants */
     bool has_tassel;
 } maize;
 
@@ -32,7 +33,7 @@ static void maize_leaf(plm_builder *builder, const maize *kind, const plm_dispos
                              .pitch_power = plm_between(random, 1.3, 2.6),
                              .yaw = plm_draw_angle(random, -12, 12),
                              .roll = plm_draw_angle(random, -45, 45)};
-    blade->bend.pitch *= 1.1 - 0.6 * rise; /* young leaves at the top stand up */
+    blade->bend.pitch *= kind->limpness * (1.1 - 0.6 * rise); /* young leaves at the top stand up */
     blade->fold = plm_draw_angle(random, 4, 12) + habit->fold * plm_draw_angle(random, 0, 25);
     blade->fold_end = blade->fold * plm_between(random, 0, 0.5);
     blade->cup = plm_draw_angle(random, 0, 18);
@@ -99,7 +100,8 @@ void plm_grow_maize(plm_builder *builder)
                          .stem_radius = 0.004 + height * plm_between(random, 0.004, 0.008),
                          .leaves = 5 + plm_draw_index(random, 6),
                          .leaf_length = (0.15 + 0.6 * height) * plm_between(random, 0.8, 1.15),
-                         .leaf_width = (0.02 + 0.05 * height) * plm_between(random, 0.8, 1.25)};
+                         .leaf_width = (0.02 + 0.05 * height) * plm_between(random, 0.8, 1.25),
+                         .limpness = 1};
     grow_maize(builder, &young);
 }
 
@@ -109,9 +111,10 @@ void plm_grow_maize_large(plm_builder *builder)
     const maize grown = {.height = 1.95,
                          .stem_radius = plm_between(random, 0.011, 0.014),
                          .leaves = 14,
-                         .leaf_length = plm_between(random, 0.95, 1.05),
-                         .leaf_width = plm_between(random, 0.08, 0.1),
-                         .spread = 0.2,
+                         .leaf_length = plm_between(random, 1.15, 1.25),
+                         .leaf_width = plm_between(random, 0.1, 0.12),
+                         .spread = 0.4,
+                         .limpness = 0.6,
                          .has_tassel = true};
     grow_maize(builder, &grown);
 }

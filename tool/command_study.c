@@ -5,6 +5,7 @@
 #include "tool/command.h"
 #include "tool/study.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -139,6 +140,14 @@ static void show(const progress *now, const char *plant, const char *scenario, i
     if (now->done == now->total) fputc('\n', stderr);
 }
 
+/* Largest distance of a vertex from the line over the stem's base. */
+static double radius_of(const plm_mesh *mesh)
+{
+    double most = 0;
+    for (size_t k = 0; k < mesh->vertex_count; k++) most = fmax(most, hypot(mesh->vertex[k][0], mesh->vertex[k][1]));
+    return most;
+}
+
 static void note_model(const plm_virtual_plant *plant, study_model *model)
 {
     *model = (study_model){.is_there = true,
@@ -147,7 +156,7 @@ static void note_model(const plm_virtual_plant *plant, study_model *model)
                            .vertices = plant->mesh.vertex_count,
                            .faces = plant->mesh.triangle_count,
                            .height = plant->whole.height,
-                           .radius = 0.5 * plant->whole.width};
+                           .radius = radius_of(&plant->mesh)};
 }
 
 static plm_status one_step(study *all, const study_settings *settings, const plm_virtual_plant *plant,

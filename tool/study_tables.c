@@ -7,10 +7,10 @@
 #include "io/io.h"
 
 const study_plant study_plants[STUDY_PLANTS] = {
-    {"tomato", "tomato_large", 0.05, 21, 21, 8558, 1.7, 0.43, 142.53, 0.59, 0.78},
-    {"maize", "maize_large", 0.25, 14, 15, 5150, 2.5, 0.97, 699.83, 0.67, 0.94},
-    {"cucumber", "cucumber_large", 0.11, 17, 18, 1931, 2.0, 0.43, 12.74, 0.48, 0.94},
-    {"arabidopsis", "arabidopsis_large", 0.12, 10, 11, 1200, 0.03, 0.06, 189.92, 0.79, 0.81},
+    {"tomato", "tomato_large", 0.045, 21, 21, 8558, 1.7, 0.43, 142.53, 0.59, 0.78},
+    {"maize", "maize_large", 0.235, 14, 15, 5150, 2.5, 0.97, 699.83, 0.67, 0.94},
+    {"cucumber", "cucumber_large", 0.105, 17, 18, 1931, 2.0, 0.43, 12.74, 0.48, 0.94},
+    {"arabidopsis", "arabidopsis_large", 0.125, 10, 11, 1200, 0.03, 0.06, 189.92, 0.79, 0.81},
 };
 
 /* The paper's Table 3: correlation with visible area over 0 to 30 % loss. NAN: constant there. */
