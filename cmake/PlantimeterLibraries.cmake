@@ -19,7 +19,7 @@ pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 
-set(PLANTIMETER_IO_LIBRARIES OpenMeshCore ${GeographicLib_LIBRARIES} PkgConfig::JANSSON PkgConfig::NETTLE m)
+set(PLANTIMETER_IO_LIBRARIES OpenMeshCore ${GeographicLib_LIBRARIES} PkgConfig::JANSSON PkgConfig::NETTLE PNG::PNG m)
 set(PLANTIMETER_SEGMENT_LIBRARIES PkgConfig::GSL m)
 set(PLANTIMETER_MESH_LIBRARIES CGAL::CGAL OpenMeshCore OpenMeshTools PkgConfig::GSL m)
 set(PLANTIMETER_SIMULATE_LIBRARIES embree PkgConfig::GSL PkgConfig::JANSSON PNG::PNG m)

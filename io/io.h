@@ -100,6 +100,16 @@ PLM_API plm_status plm_mesh_read(const char *path, plm_mesh *mesh, uint8_t **fac
 PLM_API plm_status plm_mesh_parse(const void *data, size_t size, const char *name, plm_mesh *mesh, uint8_t **face_label,
                                   plm_error *error);
 
+/** A picture: rows from the top, pixels of 1 (grey) or 3 (red, green, blue) channels of 8 or 16 bits in this machine's byte order.
+ * The pixels are the caller's. */
+typedef struct plm_image {
+    int width, height, channels, bits;
+    const void *pixels;
+} plm_image;
+
+/** Writes a picture as PNG. PLM_E_WRITE, PLM_E_LIBRARY, PLM_E_MEMORY. */
+PLM_API plm_status plm_image_write_png(const char *path, const plm_image *image, plm_error *error);
+
 /** Opens path + ".part" for writing; plm_output_close renames it to path when all went well (ok true and no write
  * error), and removes it else. The seam through which every file of the project is written. */
 typedef struct plm_output plm_output;

@@ -2,6 +2,8 @@
  * centre to the stroke. */
 #include "reports/canvas.h"
 
+#include "io/io.h"
+
 #include "reports/letters.h"
 
 #include <math.h>
@@ -127,4 +129,10 @@ double plm_text_width(const char *text, double size)
     double units = 0;
     while (*text) units += plm_letter_find(plm_letter_next(&text))->advance + tracking;
     return units * size / units_per_capital;
+}
+
+plm_status plm_canvas_write_png(const plm_canvas *canvas, const char *path, plm_error *error)
+{
+    const plm_image image = {canvas->width, canvas->height, 3, 8, canvas->pixel};
+    return plm_image_write_png(path, &image, error);
 }

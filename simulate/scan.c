@@ -209,6 +209,9 @@ static plm_status check(const plm_scan_options *options, plm_error *error)
         return plm_fail(error, PLM_E_ARGUMENT, "density of %g points per m2", options->density);
     if (options->image_width < 0 || options->image_width > 8192)
         return plm_fail(error, PLM_E_ARGUMENT, "images of %d pixels; 1 to 8192 was expected", options->image_width);
+    if (!(fabs(options->axis_tilt) < 1 && fabs(options->axis_shift) < 10))
+        return plm_fail(error, PLM_E_ARGUMENT, "an axis that is off by %g rad and %g m", options->axis_tilt,
+                        options->axis_shift);
     if (options->views < 0 || options->views > PLM_POSITIONS_MAXIMUM)
         return plm_fail(error, PLM_E_ARGUMENT, "%d views; 1 to %d was expected", options->views, PLM_POSITIONS_MAXIMUM);
     return PLM_OK;

@@ -129,6 +129,7 @@ plm_status plm_scan_rgbd(const plm_stage_set *stage, const plm_scan_options *opt
     for (int k = 0; k < options->views && status == PLM_OK; k++) {
         plm_view view = {0};
         status = plm_view_take(stage, options, k, &view, error);
+        if (status == PLM_OK && options->views_folder) status = plm_view_write(stage, options, k, &view, error);
         if (status == PLM_OK) status = collect(stage, options, &view, &pixels, error);
         scan->pixels += view.pixels;
         ghosts += view.ghosts;

@@ -148,7 +148,12 @@ typedef struct plm_scan_options {
     double voxel;     /**< rgbd: m; 0: drawn between 0.5 and 1 mm, more for large plants */
     double misplacement, misrotation; /**< rgbd: SD of each view's shift (m) and turn (rad); 0: 0.2 mm, 0.05 degrees;
                                            below 0: none */
-    double thin_stem;  /**< rgbd: stems and petioles of smaller diameter lose pieces, m; 0: 3 mm; below 0: none */
+    double axis_tilt,
+        axis_shift; /**< rgbd: how far the calibrated axis of the turntable leans (rad) and stands (m) from the true one;
+                                       poses of the views after the first are wrong by it */
+    const char *
+        views_folder; /**< rgbd: depth, colour, mask and pose of every view are written here; NULL: not. The caller's */
+    double thin_stem; /**< rgbd: stems and petioles of smaller diameter lose pieces, m; 0: 3 mm; below 0: none */
     double unevenness; /**< splat: ratio of the densities; 0: drawn between 5 and 15 */
     bool is_gaussians; /**< splat: gaussians instead of points: their centres keep off the rim */
 } plm_scan_options;

@@ -63,6 +63,37 @@ static plm_camera misjudged(const plm_camera *camera, const double target[3], co
     return wrong;
 }
 
+/* Turns a vector about a unit axis (Rodrigues). */
+static void turn_about(const double axis[3], double angle, double vector[3])
+{
+    double across[3], turned[3];
+    const double along = plm_dot(axis, vector), sine = sin(angle), cosine = cos(angle);
+    plm_cross(axis, vector, across);
+    for (int i = 0; i < 3; i++) turned[i] = cosine * vector[i] + sine * across[i] + (1 - cosine) * along * axis[i];
+    memcpy(vector, turned, sizeof turned);
+}
+
+/* Poses come from the first view's by turning about the turntable's axis: where that is calibrated wrongly, the view is turned back
+ * about the true axis and forth about the wrong one. */
+static void turn_wrongly(const plm_stage_set *stage, const plm_scan_options *options, int number, plm_camera *camera)
+{
+    const uint64_t key = plm_key(options->seed, 23);
+    const double lean = 2 * PLM_PI * plm_uniform_at(key, 0), aside = 2 * PLM_PI * plm_uniform_at(key, 1);
+    const double angle = 2 * PLM_PI * number / options->views, up[3] = {0, 0, 1};
+    const double axis[3] = {sin(options->axis_tilt) * cos(lean), sin(options->axis_tilt) * sin(lean),
+                            cos(options->axis_tilt)};
+    const double shift[3] = {options->axis_shift * cos(aside), options->axis_shift * sin(aside), 0};
+    for (int i = 0; i < 3; i++) camera->position[i] -= stage->centre[i];
+    turn_about(up, -angle, camera->position);
+    for (int i = 0; i < 3; i++) camera->position[i] -= shift[i];
+    turn_about(axis, angle, camera->position);
+    for (int i = 0; i < 3; i++) camera->position[i] += shift[i] + stage->centre[i];
+    for (int k = 0; k < 3; k++) {
+        turn_about(up, -angle, camera->rotation[k]);
+        turn_about(axis, angle, camera->rotation[k]);
+    }
+}
+
 void plm_camera_unproject(const plm_camera *camera, double column, double row, double depth, double point[3])
 {
     const double x = (column - camera->centre[0]) / camera->focal[0], y = (row - camera->centre[1]) / camera->focal[1];
@@ -180,6 +211,7 @@ plm_status plm_view_take(const plm_stage_set *stage, const plm_scan_options *opt
         plm_ring_positions(stage, options, position);
         taken.camera = camera_at(position[number], stage->centre, options->image_width);
         taken.assumed = misjudged(&taken.camera, stage->centre, options, number);
+        if (options->axis_tilt != 0 || options->axis_shift != 0) turn_wrongly(stage, options, number, &taken.assumed);
         trace(stage, &taken);
         memcpy(truth, taken.depth, pixels * sizeof *truth);
         sense(stage, options, number, truth, &taken);

@@ -26,6 +26,11 @@ plm_status plm_view_take(const plm_stage_set *stage, const plm_scan_options *opt
                          plm_error *error);
 void plm_view_free(plm_view *view);
 
+/** Writes folder/view_NN.depth.png (16 bits, units of 0.1 mm along the optical axis, 0: nothing), .colour.png, .mask.png (255: plant)
+ * and .json (intrinsics, calibrated and true pose) of view number `number`. The folder is made where it is missing. */
+plm_status plm_view_write(const plm_stage_set *stage, const plm_scan_options *options, int number, const plm_view *view,
+                          plm_error *error);
+
 /** The world point of a pixel at a depth. */
 void plm_camera_unproject(const plm_camera *camera, double column, double row, double depth, double point[3]);
 

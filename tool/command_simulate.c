@@ -12,8 +12,9 @@ typedef enum cloud_format { FORMAT_PLY = 0, FORMAT_3DGS, FORMAT_PCD, FORMAT_XYZ,
 typedef struct simulate_settings {
     int count, scanner, points, format, views;
     uint64_t seed;
-    double density, noise, outliers, resolution;
-    bool has_pot, has_table, is_quiet;
+    int image_width;
+    double density, noise, outliers, resolution, axis_tilt, axis_shift;
+    bool has_pot, has_table, is_quiet, has_views_out;
     const char *output;
 } simulate_settings;
 
@@ -81,6 +82,32 @@ static const plm_option options[] = {
      AT(views),
      .minimum = 1,
      .maximum = 1024},
+    {.name = "views-out",
+     .help =
+         "rgbd: write each view too, into DIR/PLANT.views: depth (16-bit PNG, 0.1 mm), colour, mask, and pose (JSON)",
+     .kind = PLM_OPTION_FLAG,
+     AT(has_views_out)},
+    {.name = "image-width",
+     .argument = "PIXELS",
+     .help = "of rgbd's views, 16 to 9 (default: 960)",
+     .kind = PLM_OPTION_INTEGER,
+     AT(image_width),
+     .minimum = 16,
+     .maximum = 8192},
+    {.name = "axis-tilt",
+     .argument = "DEGREES",
+     .help = "rgbd: how far the calibrated axis of the turntable leans from the true one (default: 0)",
+     .kind = PLM_OPTION_NUMBER,
+     AT(axis_tilt),
+     .minimum = 0,
+     .maximum = 45},
+    {.name = "axis-shift",
+     .argument = "MM",
+     .help = "rgbd: how far it stands from the true one (default: 0)",
+     .kind = PLM_OPTION_NUMBER,
+     AT(axis_shift),
+     .minimum = 0,
+     .maximum = 1000},
     {.name = "pot", .help = "stand the plants in pots", .kind = PLM_OPTION_FLAG, AT(has_pot)},
     {.name = "table", .help = "stand them on a table", .kind = PLM_OPTION_FLAG, AT(has_table)},
     {.name = "resolution",
@@ -123,6 +150,9 @@ static plm_scan_options scan_options(const simulate_settings *settings, uint64_t
         .has_pot = settings->has_pot,
         .has_table = settings->has_table,
         .views = settings->views,
+        .image_width = settings->image_width,
+        .axis_tilt = settings->axis_tilt * 3.14159265358979323846 / 180,
+        .axis_shift = settings->axis_shift * 1e-3,
         .is_gaussians = settings->format == FORMAT_3DGS,
     };
 }
@@ -209,11 +239,20 @@ static plm_status make_plant(const simulate_settings *settings, simulated *row, 
 {
     plm_virtual_plant plant = {0};
     const plm_plant_options grow = {.seed = row->seed, .resolution = settings->resolution};
-    const plm_scan_options scan = scan_options(settings, row->seed);
+    plm_scan_options scan = scan_options(settings, row->seed);
+    char views[4096];
     const bool has_scan = settings->scanner != PLM_SCANNER_NONE;
-    plm_status status = plm_plant_grow(row->kind, &grow, &plant, error);
+    plm_status status = PLM_OK;
+    if (settings->has_views_out) {
+        char name[112];
+        snprintf(name, sizeof name, "%s.views", row->plant_id);
+        status = path_of(settings->output, name, views, error);
+        scan.views_folder = views;
+    }
+    if (status == PLM_OK) status = plm_plant_grow(row->kind, &grow, &plant, error);
     if (status == PLM_OK) status = add_hull(&plant, error);
     if (status == PLM_OK && has_scan) status = plm_scan_plant(&plant, &scan, &row->scan, error);
+    row->scan.used.views_folder = NULL; /* it does not outlive this call */
     if (status == PLM_OK) status = write_files(settings, row, &plant, has_scan ? &row->scan : NULL, error);
     if (status == PLM_OK) status = plm_manual_readings(row->plant_id, &plant, row->seed, readings, error);
     if (status == PLM_OK && !settings->is_quiet)
@@ -298,6 +337,9 @@ static int run(int argc, char **argv)
     if (!settings.output) return plm_usage_error(&plm_command_simulate, "--output is missing");
     if (settings.format == FORMAT_3DGS && settings.scanner != PLM_SCANNER_SPLAT)
         return plm_usage_error(&plm_command_simulate, "--format 3dgs needs --scanner splat");
+    if (settings.scanner != PLM_SCANNER_RGBD &&
+        (settings.has_views_out || settings.axis_tilt > 0 || settings.axis_shift > 0))
+        return plm_usage_error(&plm_command_simulate, "--views-out, --axis-tilt and --axis-shift need --scanner rgbd");
     plm_error error = {0};
     const plm_status made = plm_folder_make(settings.output, &error);
     if (made != PLM_OK) return plm_report_failure(made, &error);
@@ -316,7 +358,8 @@ const plm_command plm_command_simulate = {
         "For each plant DIR gets PLANT.ply (the cloud as a user would bring it), PLANT.labelled.ply (with label, organ "
         "and leaflet), PLANT.mesh.ply (its faces) and PLANT.truth.json (its true traits in metres and degrees); and "
         "for "
-        "the run truth.json (an index) and manual.csv (readings as of ruler and protractor).\n\n"
+        "the run truth.json (an index) and manual.csv (readings as of ruler and protractor). --views-out adds "
+        "PLANT.views/view_NN.depth.png, .colour.png, .mask.png and .json of each view.\n\n"
         "The same seed gives the same files, whatever the number of threads.",
     .options = options,
     .option_count = COUNT(options),

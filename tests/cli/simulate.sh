@@ -19,3 +19,7 @@ simulate tomatoe -o wrong
 simulate pepper --format 3dgs -o wrong
 simulate pepper
 simulate -o wrong
+echo 'with its views:'
+simulate -q pepper --scanner rgbd --views 2 --image-width 160 --axis-tilt 1 --axis-shift 2 --views-out -o views
+ls views/*.views
+simulate pepper --views-out -o wrong
