@@ -13,8 +13,11 @@ struct plm_thinning {
     const plm_virtual_plant *plant;
     plm_thinning_options options;
     plm_scan_options dome;
-    plm_stage_set intact;                  /* the stage of the intact plant: where the dome stands */
-    uint64_t rays;                         /* a scanner */
+    plm_stage_set intact;   /* the stage of the intact plant: where the dome stands */
+    uint64_t rays;          /* a scanner */
+    size_t ellipsoid_faces; /* of the half ellipsoid: area and hits of each face */
+    double *ellipsoid_area;
+    uint32_t *ellipsoid_hits;
     double full_density;                   /* hits per m2 of a fully visible half ellipsoid of the plant's size */
     double sf_mean, sf_variance, sf_count; /* of the intact plant */
 };
@@ -250,6 +253,22 @@ static plm_status measure(const plm_thinning *thinning, const plm_virtual_plant 
 
 /* ---- The study ----------------------------------------------------------------------------------------------------- */
 
+static plm_status keep_ellipsoid(plm_thinning *thinning, const plm_virtual_plant *dome, const plm_samples *samples,
+                                 plm_error *error)
+{
+    const size_t count = dome->mesh.triangle_count;
+    thinning->ellipsoid_area = plm_alloc(count, sizeof *thinning->ellipsoid_area, error);
+    thinning->ellipsoid_hits = plm_alloc_zero(count, sizeof *thinning->ellipsoid_hits, error);
+    if (!thinning->ellipsoid_area || !thinning->ellipsoid_hits) return PLM_E_MEMORY;
+    thinning->ellipsoid_faces = count;
+    for (size_t f = 0; f < count; f++) {
+        double normal[3];
+        thinning->ellipsoid_area[f] = plm_face_normal(&dome->mesh, f, normal);
+    }
+    for (size_t k = 0; k < samples->count; k++) thinning->ellipsoid_hits[samples->sample[k].face]++;
+    return PLM_OK;
+}
+
 /* Hits per area on a half ellipsoid of the plant's width and height, from the same dome. */
 static plm_status full_density(plm_thinning *thinning, plm_error *error)
 {
@@ -258,7 +277,10 @@ static plm_status full_density(plm_thinning *thinning, plm_error *error)
     plm_samples samples = {0};
     const plm_true_plant *whole = &thinning->plant->whole;
     const double radius = 0.5 * whole->width, stretch = whole->height / radius;
-    plm_builder_start(&builder, "half ellipsoid", &(plm_plant_options){.resolution = 2}, &dome, error);
+    /* faces of about 125 mm2, the middle of the paper's classes: 1536 faces at resolution 2 */
+    const double surface = 2 * PLM_PI * radius * (radius + 2 * whole->height) / 3;
+    const double resolution = fmin(fmax(2 * sqrt(surface / (1536 * 125e-6)), 2), 8);
+    plm_builder_start(&builder, "half ellipsoid", &(plm_plant_options){.resolution = resolution}, &dome, error);
     builder.label = PLM_LABEL_LEAF;
     builder.organ = 0;
     plm_build_spheroid(&builder, (double[3]){0, 0, 0}, radius, stretch);
@@ -274,6 +296,7 @@ static plm_status full_density(plm_thinning *thinning, plm_error *error)
         dome.mesh.triangle_count = kept;
         status = scan_rest(thinning, &dome, &samples, error);
     }
+    if (status == PLM_OK) status = keep_ellipsoid(thinning, &dome, &samples, error);
     if (status == PLM_OK) thinning->full_density = (double)samples.count / plm_plant_area(&dome);
     plm_free(samples.sample);
     if (builder.status == PLM_OK) plm_virtual_plant_free(&dome);
@@ -314,7 +337,16 @@ void plm_thinning_free(plm_thinning *thinning)
 {
     if (!thinning) return;
     plm_stage_free(&thinning->intact);
+    plm_free(thinning->ellipsoid_area);
+    plm_free(thinning->ellipsoid_hits);
     plm_free(thinning);
+}
+
+void plm_thinning_ellipsoid(const plm_thinning *thinning, const double **area, const uint32_t **hits, size_t *count)
+{
+    *area = thinning->ellipsoid_area;
+    *hits = thinning->ellipsoid_hits;
+    *count = thinning->ellipsoid_faces;
 }
 
 plm_status plm_thinning_step(const plm_thinning *thinning, plm_loss loss, double loss_percent,

@@ -8,6 +8,8 @@ typedef struct maize {
     double leaf_length, leaf_width; /* of the largest, m */
     double spread;                  /* radians added to the leaves' angle */
     double limpness;                /* of the leaves' bend; 1 in young plants */
+    double lean;                    /* of the stem, degrees */
+    double shrink;                  /* of the uppermost leaves: the last ones below a tassel are short */
     bool has_tassel;
 } maize;
 
@@ -16,7 +18,7 @@ static void maize_leaf(plm_builder *builder, const maize *kind, const plm_dispos
 {
     plm_random *random = &builder->random;
     const double rise = (rank + 0.5) / kind->leaves; /* 0 lowest, 1 top */
-    const double size = 1 - 1.15 * (rise - 0.58) * (rise - 0.58) * 1.8;
+    const double size = (1 - 1.15 * (rise - 0.58) * (rise - 0.58) * 1.8) * (1 - kind->shrink * pow(rise, 4));
     plm_leaf_spec leaf = {.role = PLM_LEAF_TRUE, .azimuth = azimuth};
     plm_blade_spec *blade = &leaf.blade;
     const double radius = plm_taper_at(&builder->stem[0].taper, node, builder->stem[0].axis.length);
@@ -54,7 +56,8 @@ static void maize_tassel(plm_builder *builder)
         const plm_taper taper = {.base = 0.0025, .tip = 0.0018};
         const double zenith = k ? plm_draw_angle(random, 12, 40) : 0.02;
         const plm_frame_at frame = plm_frame_of_direction(zenith, plm_between(random, 0, 2 * PLM_PI));
-        const plm_bend bend = {.pitch = plm_draw_angle(random, 0, 50)};
+        const plm_bend bend = {.pitch =
+                                   k ? plm_draw_angle(random, 0, 50) : 0}; /* the spike in the middle stands upright */
         plm_curve axis;
         double start[3];
         plm_curve_at(stem, stem->length + 0.02 * k, start, NULL);
@@ -74,7 +77,7 @@ static void grow_maize(plm_builder *builder, const maize *kind)
     double node[PLM_TRUE_NODES_MAXIMUM];
     plm_curve axis;
     builder->plant->has_petioles = false;
-    plm_draw_stem(random, kind->height, 4, &axis);
+    plm_draw_stem(random, kind->height, kind->lean, &axis);
     plm_draw_nodes(random, kind->height * plm_between(random, 0.08, 0.14), 0.98 * kind->height,
                    plm_between(random, 0.98, 1.08), kind->leaves, node);
     plm_taper taper = {.base = kind->stem_radius,
@@ -101,20 +104,23 @@ void plm_grow_maize(plm_builder *builder)
                          .leaves = 5 + plm_draw_index(random, 6),
                          .leaf_length = (0.15 + 0.6 * height) * plm_between(random, 0.8, 1.15),
                          .leaf_width = (0.02 + 0.05 * height) * plm_between(random, 0.8, 1.25),
-                         .limpness = 1};
+                         .limpness = 1,
+                         .lean = 4};
     grow_maize(builder, &young);
 }
 
 void plm_grow_maize_large(plm_builder *builder)
 {
     plm_random *random = &builder->random;
-    const maize grown = {.height = 1.95,
+    const maize grown = {.height = 2.17,
                          .stem_radius = plm_between(random, 0.011, 0.014),
                          .leaves = 14,
                          .leaf_length = plm_between(random, 1.15, 1.25),
                          .leaf_width = plm_between(random, 0.1, 0.12),
                          .spread = 0.4,
                          .limpness = 0.6,
+                         .lean = 1,
+                         .shrink = 0.55,
                          .has_tassel = true};
     grow_maize(builder, &grown);
 }

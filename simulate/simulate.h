@@ -310,6 +310,11 @@ PLM_API plm_status plm_thinning_start(const plm_virtual_plant *plant, const plm_
                                       plm_thinning **thinning, plm_error *error);
 PLM_API void plm_thinning_free(plm_thinning *thinning);
 
+/** Area (m2) and hits of each face of the half ellipsoid that the plant's density is compared with: count of both. They belong to
+ * thinning. */
+PLM_API void plm_thinning_ellipsoid(const plm_thinning *thinning, const double **area, const uint32_t **hits,
+                                    size_t *count);
+
 /** Removes loss_percent of the original number of faces and measures: value[PLM_THIN_COUNT]. loss_percent 0 is the intact
  * plant. */
 PLM_API plm_status plm_thinning_step(const plm_thinning *thinning, plm_loss loss, double loss_percent,

@@ -4,6 +4,7 @@
 #include "tool/measure_settings.h"
 #include "tool/plant_run.h"
 #include "tool/talk.h"
+#include "tool/visibility.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -91,6 +92,22 @@ static const plm_option options[] = {
      .offset = offsetof(measure_settings, views),
      .minimum = 0,
      .maximum = 1000000,
+     .changes_nothing = true},
+    {.name = "visibility-correction",
+     .argument = "FILE[:PLANT]",
+     .help = "with -o and --visible-share: write corrected.csv, plant traits as of the whole plant, by the curves of "
+             "PLANT in a "
+             "visibility_correction.csv of `study thinning`",
+     .kind = PLM_OPTION_TEXT,
+     .offset = offsetof(measure_settings, correction),
+     .changes_nothing = true},
+    {.name = "visible-share",
+     .argument = "SHARE|CSV",
+     .help = "share of the whole plant's visible area that the scans have, above 0 to 1; or a CSV with the columns "
+             "plant_id and "
+             "visible_share",
+     .kind = PLM_OPTION_TEXT,
+     .offset = offsetof(measure_settings, share),
      .changes_nothing = true},
     {.letter = 'f',
      .name = "force",
@@ -213,8 +230,18 @@ static int exit_code(const batch_tally *count, size_t inputs)
     return count->failed < inputs ? PLM_EXIT_SOME_FAILED : (int)plm_exit_of(count->first_failure);
 }
 
-static plm_status run_batch(const measure_settings *settings, const plm_measure_options *measure, char *const *input,
-                            size_t count, batch_tally *tally, plm_error *error)
+/* corrected.csv, of all plants of the folder: it follows from the tables and is made anew each time. */
+static plm_status write_corrected(const batch *done, const visibility *correction, plm_error *error)
+{
+    char path[4096];
+    if (snprintf(path, sizeof path, "%s/corrected.csv", done->folder) >= (int)sizeof path)
+        return plm_fail(error, PLM_E_WRITE, "%.60s...: the path is too long", done->folder);
+    return visibility_write(correction, &done->results, path, error);
+}
+
+static plm_status run_batch(const measure_settings *settings, const visibility *correction,
+                            const plm_measure_options *measure, char *const *input, size_t count, batch_tally *tally,
+                            plm_error *error)
 {
     json_t *recorded = NULL;
     batch open;
@@ -229,6 +256,7 @@ static plm_status run_batch(const measure_settings *settings, const plm_measure_
         const plm_report_options page = {.views = (size_t)settings->views};
         status = plm_report_write(settings->output, &page, &has_view, error);
     }
+    if (status == PLM_OK && correction->curve_count) status = write_corrected(&open, correction, error);
     if (status == PLM_OK && tally->skipped && !settings->quiet)
         fprintf(stderr, "plantimeter: %zu of %zu plants were measured before; --force measures them again\n",
                 tally->skipped, count);
@@ -247,9 +275,17 @@ static int run(int argc, char **argv)
     plm_measure_options measure;
     if (measure_options_of(&settings, &measure, &error) != PLM_OK)
         return plm_usage_error(&plm_command_measure, "%s", error.message);
+    if (!settings.correction != !settings.share || (settings.correction && !settings.output))
+        return plm_usage_error(&plm_command_measure,
+                               "--visibility-correction, --visible-share and --output go together");
+    visibility correction = {0};
+    plm_status status = PLM_OK;
+    if (settings.correction) status = visibility_read(settings.correction, settings.share, &correction, &error);
+    if (status != PLM_OK) return plm_report_failure(status, &error);
     if (settings.threads) omp_set_num_threads(settings.threads);
     batch_tally tally = {0};
-    const plm_status status = run_batch(&settings, &measure, argv, (size_t)argc, &tally, &error);
+    status = run_batch(&settings, &correction, &measure, argv, (size_t)argc, &tally, &error);
+    visibility_free(&correction);
     return status == PLM_OK ? exit_code(&tally, (size_t)argc) : plm_report_failure(status, &error);
 }
 

@@ -53,7 +53,7 @@ static const plm_option options[] = {
      .maximum = 100},
     {.name = "rays",
      .argument = "N",
-     .help = "of light at each step (default: 1000000)",
+     .help = "thinning: of light at each step (default: 1000000); light: the most (default: 4096000)",
      .kind = PLM_OPTION_INTEGER,
      AT(rays),
      .minimum = 100,
@@ -159,19 +159,37 @@ static void note_model(const plm_virtual_plant *plant, study_model *model)
                            .radius = radius_of(&plant->mesh)};
 }
 
-static plm_status one_step(study *all, const study_settings *settings, const plm_virtual_plant *plant,
-                           plm_thinning **thinning, int p, int l, int step, progress *now, plm_error *error)
+/* Only where something is left to do. */
+static plm_status start_once(const study_settings *settings, const plm_virtual_plant *plant, plm_thinning **thinning,
+                             plm_error *error)
 {
     const plm_thinning_options thin = {.seed = settings->seed,
                                        .density = settings->density * 1e6,
                                        .light_rays = (uint64_t)settings->rays,
                                        .hull = plm_convex_hull};
+    return *thinning ? PLM_OK : plm_thinning_start(plant, &thin, thinning, error);
+}
+
+/* The half ellipsoid's faces for figure 8; the file stays from run to run, as the steps do. */
+static plm_status ensure_ellipsoid(const study *all, const study_settings *settings, const plm_virtual_plant *plant,
+                                   int p, plm_thinning **thinning, plm_error *error)
+{
+    char name[64], path[STUDY_PATH];
+    snprintf(name, sizeof name, "ellipsoid_%s.csv", study_plants[p].name);
+    plm_status status = study_path(all, name, path, error);
+    if (status != PLM_OK || access(path, R_OK) == 0) return status;
+    status = start_once(settings, plant, thinning, error);
+    return status == PLM_OK ? study_write_ellipsoid(all, p, *thinning, error) : status;
+}
+
+static plm_status one_step(study *all, const study_settings *settings, const plm_virtual_plant *plant,
+                           plm_thinning **thinning, int p, int l, int step, progress *now, plm_error *error)
+{
     char path[STUDY_PATH];
     double *value = all->value[p][l][step];
     plm_status status = step_path(all, settings, p, l, step, path, error);
     if (status == PLM_OK && !read_step(path, value)) {
-        if (!*thinning)
-            status = plm_thinning_start(plant, &thin, thinning, error); /* only where something is left to do */
+        status = start_once(settings, plant, thinning, error);
         if (status == PLM_OK) status = plm_thinning_step(*thinning, (plm_loss)l, step, value, error);
         if (status == PLM_OK) status = write_step(path, value, error);
         now->measured++;
@@ -189,6 +207,7 @@ static plm_status study_one(study *all, const study_settings *settings, int p, p
     plm_status status = plm_plant_grow(study_plants[p].kind, &grow, &plant, error);
     if (status != PLM_OK) return status;
     note_model(&plant, &all->model[p]);
+    status = ensure_ellipsoid(all, settings, &plant, p, &thinning, error);
     for (int l = 0; l < PLM_LOSS_COUNT; l++)
         for (int step = 0; step <= all->max_loss && all->has_loss[l] && status == PLM_OK; step++)
             status = one_step(all, settings, &plant, &thinning, p, l, step, now, error);
@@ -228,13 +247,30 @@ static plm_status make_folders(const study *all, plm_error *error)
     return status == PLM_OK ? plm_folder_make(steps, error) : status;
 }
 
+/* `study light`, on the first of the plants. */
+static int study_light_error(study *all, const study_settings *settings)
+{
+    plm_error error = {0};
+    bool is_drawn = true;
+    int plant = 0;
+    while (plant + 1 < STUDY_PLANTS && !all->has_plant[plant]) plant++;
+    plm_status status = plm_folder_make(all->folder, &error);
+    if (status == PLM_OK) status = study_light(all, plant, (uint64_t)settings->rays, settings->seed, &is_drawn, &error);
+    if (status != PLM_OK) return plm_report_failure(status, &error);
+    if (!is_drawn) fprintf(stderr, "plantimeter: gnuplot did not draw light_error; its script is in %s\n", all->folder);
+    printf("%s: light_error.csv and its figure in %s\n", study_plants[plant].name, all->folder);
+    return PLM_EXIT_GOOD;
+}
+
 static int run(int argc, char **argv)
 {
-    study_settings settings = {.max_loss = 30, .rays = 1000000, .seed = 1, .density = 0.105};
+    study_settings settings = {.max_loss = 30, .seed = 1, .density = 0.105};
     const int code = plm_parse_options(&plm_command_study, &argc, argv, &settings);
     if (code >= 0) return code;
-    if (argc != 1 || strcmp(argv[0], "thinning") != 0)
-        return plm_usage_error(&plm_command_study, "which study? There is one: thinning");
+    const bool is_light = argc == 1 && strcmp(argv[0], "light") == 0;
+    if (argc != 1 || (!is_light && strcmp(argv[0], "thinning") != 0))
+        return plm_usage_error(&plm_command_study, "which study? There are thinning and light");
+    if (!settings.rays) settings.rays = is_light ? 4096000 : 1000000;
     if (!settings.output) return plm_usage_error(&plm_command_study, "--output is missing");
     plm_error error = {0};
     study *all = plm_alloc_zero(1, sizeof *all, &error);
@@ -248,6 +284,8 @@ static int run(int argc, char **argv)
     else if (!mark_names(settings.scenarios, scenario_name, all->has_loss))
         result =
             plm_usage_error(&plm_command_study, "--scenarios: \"%s\" names an unknown scenario", settings.scenarios);
+    else if (is_light)
+        result = study_light_error(all, &settings);
     else if (make_folders(all, &error) != PLM_OK)
         result = plm_report_failure(error.status, &error);
     else
@@ -258,16 +296,20 @@ static int run(int argc, char **argv)
 
 const plm_command plm_command_study = {
     .name = "study",
-    .arguments = "thinning [OPTION]... -o DIR",
-    .summary = "what loss of geometry does to traits, as the laser-scanning paper studied it",
+    .arguments = "thinning|light [OPTION]... -o DIR",
+    .summary = "what loss of geometry does to traits, as the laser-scanning paper studied it; the error of light",
     .description =
-        "Grows the paper's four plants, removes their faces percent by percent (at random, from the inside, from the "
+        "thinning: grows the paper's four plants, removes their faces percent by percent (at random, from the inside, "
+        "from the "
         "outside), scans and lights each step, and writes thinning.csv (plant, scenario, loss_percent, trait, value, "
         "relative), the paper's tables 1, 2 and 3 with its values beside ours (CSV and Markdown), "
-        "visibility_correction.csv (relative trait = 1 + slope x (relative visible area - 1)) and figures 9, 10, 11 "
+        "visibility_correction.csv (relative trait = 1 + slope x (relative visible area - 1)) and figures 8, 9, 10, 11 "
         "and 13 "
         "with "
         "their gnuplot scripts.\n\n"
+        "light: the error of absorbed light against the number of rays, and the standard error that is told of it, on "
+        "the first of "
+        "the plants: light_error.csv and its figure.\n\n"
         "A study that was stopped goes on where it was: finished steps lie in DIR/steps.",
     .options = options,
     .option_count = COUNT(options),

@@ -6,7 +6,7 @@
 
 typedef struct measure_settings {
     reading_settings reading;
-    const char *output, *traits, *ground;
+    const char *output, *traits, *ground, *correction, *share;
     double stem_height, alpha;
     int neighbours, effort, habit, threads, files, views;
     uint64_t seed;

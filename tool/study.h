@@ -37,8 +37,19 @@ typedef struct study {
 /** Writes thinning.csv, relative.csv, table1, table2 and table3 (CSV and Markdown) and visibility_correction.csv. */
 plm_status study_write_tables(const study *all, plm_error *error);
 
+/** Writes ellipsoid_PLANT.csv: area and hits of the faces of the half ellipsoid that visibility is judged by (figure 8). */
+plm_status study_write_ellipsoid(const study *all, int plant, const plm_thinning *thinning, plm_error *error);
+
 /** Writes a gnuplot script beside each picture and runs it. Gives false when gnuplot cannot be run: the scripts are there. */
 bool study_plot(const study *all, plm_status *status, plm_error *error);
+
+/** `study light`: the error of absorbed light against the number of rays, on the intact plant: runs of 1000 rays, four times as many, and
+ * so on up to `most`, each with 8 seeds, against the mean of all runs of the most rays and three more of them. Writes light_error.csv
+ * (rays, and for the plant and for its leaves: RMS error and reported standard error, relative) and figure light_error. */
+plm_status study_light(const study *all, int plant, uint64_t most, uint64_t seed, bool *is_drawn, plm_error *error);
+
+/** Runs the script folder/NAME.gp with gnuplot: ending is svg or png. False when it does not draw. */
+bool study_run_gnuplot(const char *folder, const char *name, const char *ending);
 
 /** folder/name. */
 plm_status study_path(const study *all, const char *name, char path[STUDY_PATH], plm_error *error);

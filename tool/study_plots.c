@@ -101,12 +101,12 @@ static plm_status curve(plm_output *output, int plant, int loss, plm_thinning_tr
     if (is_against_visible)
         return plm_output_print(output, error,
                                 "'relative.csv' using ((strcol(1) eq '%s' && strcol(2) eq '%s') ? column(%d) : NaN):%d "
-                                "with linespoints pointsize 0.3 title '%s'%s",
+                                "with linespoints linewidth 1.5 pointsize 0.3 title '%s'%s",
                                 study_plants[plant].name, plm_loss_name((plm_loss)loss), 4 + (int)PLM_THIN_VISIBLE_AREA,
                                 4 + (int)trait, title, is_last ? "\n" : ", \\\n  ");
     return plm_output_print(output, error,
                             "'thinning.csv' using 3:((strcol(1) eq '%s' && strcol(2) eq '%s' && strcol(4) eq '%s') ? "
-                            "column(%d) : NaN) with linespoints pointsize 0.3 title '%s'%s",
+                            "column(%d) : NaN) with linespoints linewidth 1.5 pointsize 0.3 title '%s'%s",
                             study_plants[plant].name, plm_loss_name((plm_loss)loss), plm_thinning_trait_name(trait),
                             is_absolute ? 5 : 6, title, is_last ? "\n" : ", \\\n  ");
 }
@@ -151,7 +151,8 @@ static plm_status write_script(const study *all, const figure *drawn, const char
                               "if (!exists('ending')) ending = 'svg'\n"
                               "if (ending eq 'png') set terminal pngcairo size 1500,%d font ',11'\n"
                               "if (ending eq 'svg') set terminal svg size 1500,%d mouse standalone\n"
-                              "set output '%s.' . ending\nset datafile separator comma\nset key font ',8'\nset grid\n"
+                              "set output '%s.' . ending\nset datafile separator comma\nset datafile missing NaN\n"
+                              "set key noenhanced font ',9' bottom left\nset grid\n"
                               "set xlabel '%s'\nset ylabel '%s'\nset multiplot layout %d,%d title '%s'\n",
                               drawn->name, 380 * rows, 380 * rows, drawn->name, drawn->x_label, drawn->y_label, rows,
                               columns, drawn->title);
@@ -161,6 +162,44 @@ static plm_status write_script(const study *all, const figure *drawn, const char
         for (int l = 0; l < PLM_LOSS_COUNT && !drawn->is_a_line_a_scenario && status == PLM_OK; l++)
             if (all->has_loss[l]) status = panel(output, all, drawn, p, l, error);
     }
+    if (status == PLM_OK) status = plm_output_print(output, error, "unset multiplot\n");
+    const plm_status closed = plm_output_close(output, status == PLM_OK, error);
+    return status == PLM_OK ? closed : status;
+}
+
+/* Figure 8: hits against the area of a fully visible face, on the half ellipsoid of each plant's size. */
+static plm_status write_figure8(const study *all, const char *path, plm_error *error)
+{
+    plm_output *output;
+    plm_status status = plm_output_open(path, &output, error);
+    if (status != PLM_OK) return status;
+    int plants = 0;
+    for (int p = 0; p < STUDY_PLANTS; p++) plants += all->has_plant[p];
+    status = plm_output_print(output, error,
+                              "# Run as: gnuplot -e \"ending='png'\" figure8.gp   (or svg)\n"
+                              "if (!exists('ending')) ending = 'svg'\n"
+                              "if (ending eq 'png') set terminal pngcairo size 1500,%d font ',11'\n"
+                              "if (ending eq 'svg') set terminal svg size 1500,%d mouse standalone\n"
+                              "set output 'figure8.' . ending\nset datafile separator comma\nset key noenhanced font "
+                              "',9' top left\nset grid\n"
+                              "set xlabel 'face area, mm^2'\nset ylabel 'hits'\nset fit quiet logfile '/dev/null'\n"
+                              "set multiplot layout %d,2 title 'hits on a fully visible half ellipsoid'\n",
+                              380 * ((plants + 1) / 2), 380 * ((plants + 1) / 2), (plants + 1) / 2);
+    for (int p = 0; p < STUDY_PLANTS && status == PLM_OK; p++)
+        if (all->has_plant[p])
+            status =
+                plm_output_print(output, error,
+                                 "a = 0.1\nhits(x) = a * x\nfit hits(x) 'ellipsoid_%s.csv' skip 1 using 1:2 via a\n"
+                                 "stats 'ellipsoid_%s.csv' skip 1 using 1:2 nooutput name 'S'\n"
+                                 "set title sprintf('%s: %%.4f hits/mm^2, r^2 = %%.2f', a, S_correlation**2)\n"
+                                 "plot [0:*] [0:*] 'ellipsoid_%s.csv' skip 1 using 1:2 with dots linecolor rgb "
+                                 "'#888888' title 'faces', \\\n"
+                                 "  'ellipsoid_%s.csv' skip 1 using (25 * floor($1 / 25) + 12.5):2 smooth unique with "
+                                 "linespoints linewidth 2 "
+                                 "pointtype 7 title 'mean of classes of 25 mm2', \\\n"
+                                 "  hits(x) with lines linewidth 2 title 'a x area'\n",
+                                 study_plants[p].name, study_plants[p].name, study_plants[p].name, study_plants[p].name,
+                                 study_plants[p].name);
     if (status == PLM_OK) status = plm_output_print(output, error, "unset multiplot\n");
     const plm_status closed = plm_output_close(output, status == PLM_OK, error);
     return status == PLM_OK ? closed : status;
@@ -178,7 +217,7 @@ static void quote(const char *text, char *quoted, size_t room)
 }
 
 /* Runs a script in the study's folder. */
-static bool run_gnuplot(const char *folder, const char *name, const char *ending)
+bool study_run_gnuplot(const char *folder, const char *name, const char *ending)
 {
     char quoted[2 * STUDY_PATH], command[2 * STUDY_PATH + 96], setting[32];
     quote(folder, quoted, sizeof quoted);
@@ -201,8 +240,12 @@ static bool run_gnuplot(const char *folder, const char *name, const char *ending
 
 bool study_plot(const study *all, plm_status *status, plm_error *error)
 {
+    char figure8[STUDY_PATH];
     bool is_drawn = true;
-    *status = PLM_OK;
+    *status = study_path(all, "figure8.gp", figure8, error);
+    if (*status == PLM_OK) *status = write_figure8(all, figure8, error);
+    for (int k = 0; k < 2 && *status == PLM_OK; k++)
+        is_drawn = study_run_gnuplot(all->folder, "figure8", k ? "png" : "svg") && is_drawn;
     for (size_t k = 0; k < sizeof figures / sizeof *figures && *status == PLM_OK; k++) {
         char name[64], path[STUDY_PATH];
         if (figures[k].is_random_only && !all->has_loss[PLM_LOSS_RANDOM]) continue;
@@ -210,8 +253,8 @@ bool study_plot(const study *all, plm_status *status, plm_error *error)
         *status = study_path(all, name, path, error);
         if (*status == PLM_OK) *status = write_script(all, &figures[k], path, error);
         if (*status != PLM_OK) break;
-        is_drawn = run_gnuplot(all->folder, figures[k].name, "svg") && is_drawn;
-        is_drawn = run_gnuplot(all->folder, figures[k].name, "png") && is_drawn;
+        is_drawn = study_run_gnuplot(all->folder, figures[k].name, "svg") && is_drawn;
+        is_drawn = study_run_gnuplot(all->folder, figures[k].name, "png") && is_drawn;
     }
     return is_drawn;
 }

@@ -8,7 +8,7 @@
 
 const study_plant study_plants[STUDY_PLANTS] = {
     {"tomato", "tomato_large", 0.045, 21, 21, 8558, 1.7, 0.43, 142.53, 0.59, 0.78},
-    {"maize", "maize_large", 0.235, 14, 15, 5150, 2.5, 0.97, 699.83, 0.67, 0.94},
+    {"maize", "maize_large", 0.23, 14, 15, 5150, 2.5, 0.97, 699.83, 0.67, 0.94},
     {"cucumber", "cucumber_large", 0.105, 17, 18, 1931, 2.0, 0.43, 12.74, 0.48, 0.94},
     {"arabidopsis", "arabidopsis_large", 0.125, 10, 11, 1200, 0.03, 0.06, 189.92, 0.79, 0.81},
 };
@@ -294,9 +294,31 @@ static plm_status write_correction(const study *all, plm_error *error)
         for (int k = 0; k < TABLE3 && status == PLM_OK && all->has_plant[p]; k++) {
             double slope, residual;
             fit_correction(all, p, table3_trait[k], &slope, &residual);
+            /* what measures area in a cloud is the area of leaves */
             status = plm_output_print(output, error, "%s,%s,%.6g,%.6g\n", study_plants[p].name,
-                                      plm_thinning_trait_name(table3_trait[k]), slope, residual);
+                                      table3_trait[k] == PLM_THIN_AREA ? "total_leaf_area"
+                                                                       : plm_thinning_trait_name(table3_trait[k]),
+                                      slope, residual);
         }
+    const plm_status closed = plm_output_close(output, status == PLM_OK, error);
+    return status == PLM_OK ? closed : status;
+}
+
+plm_status study_write_ellipsoid(const study *all, int plant, const plm_thinning *thinning, plm_error *error)
+{
+    char path[STUDY_PATH], name[64];
+    const double *area;
+    const uint32_t *hits;
+    size_t count;
+    plm_output *output;
+    plm_thinning_ellipsoid(thinning, &area, &hits, &count);
+    snprintf(name, sizeof name, "ellipsoid_%s.csv", study_plants[plant].name);
+    plm_status status = study_path(all, name, path, error);
+    if (status == PLM_OK) status = plm_output_open(path, &output, error);
+    if (status != PLM_OK) return status;
+    status = plm_output_print(output, error, "face_area_mm2,hits\n");
+    for (size_t f = 0; f < count && status == PLM_OK; f++)
+        status = plm_output_print(output, error, "%.6g,%u\n", 1e6 * area[f], hits[f]);
     const plm_status closed = plm_output_close(output, status == PLM_OK, error);
     return status == PLM_OK ? closed : status;
 }

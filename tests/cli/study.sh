@@ -13,3 +13,7 @@ echo 'what cannot be:'
 study --plants oak
 study --scenarios upside-down
 plantimeter study growing -o out || echo "exit code $?"
+echo 'the error of light:'
+plantimeter study light --plants arabidopsis --rays 4000 -o light
+cut -d, -f1 light/light_error.csv
+ls light | grep -v -e png -e svg
