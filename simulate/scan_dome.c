@@ -54,8 +54,8 @@ static void cast_batch(const plm_stage_set *stage, uint64_t first, size_t count,
     for (size_t k = 0; k < count; k++) {
         const double a = rays->shift[0] + 0.7548776662466927 * (double)(first + k);
         const double b = rays->shift[1] + 0.5698402909980532 * (double)(first + k);
-        rays->cone[k] = (float)(a - floor(a));
-        rays->turn[k] = (float)(b - floor(b));
+        rays->cone[k] = (float)(a - (double)(int64_t)a); /* neither is negative */
+        rays->turn[k] = (float)(b - (double)(int64_t)b);
     }
     plm_ray_order(rays->cone, rays->turn, count, rays->order);
     for (size_t at = 0; at < count; at++) {
