@@ -2,6 +2,7 @@
 #include "reports/report.h"
 
 #include "reports/assets.h"
+#include "reports/overview_plot.h"
 #include "reports/run_json.h"
 
 #include <stdio.h>
@@ -52,7 +53,8 @@ static void put_head(plm_report *report)
         warnings += json_array_size(json_object_get(report->results->plant[i].record, "warnings"));
     }
     if (report->root)
-        plm_html_print(page, "%zu plants, %zu failed, %zu warnings. ", report->results->count, failed, warnings);
+        plm_html_print(page, "%zu plant%s, %zu failed, %zu warning%s. ", report->results->count,
+                       report->results->count == 1 ? "" : "s", failed, warnings, warnings == 1 ? "" : "s");
     put_literal(page, "Measured with Plantimeter ");
     const char *version = json_string_value(json_object_get(report->root, "version"));
     plm_html_text(page, version ? version : PLM_VERSION);
@@ -98,6 +100,10 @@ plm_status plm_report_write(const char *folder, const plm_report_options *option
     if (plm_report_has(folder, "run.json") || !validation)
         status = plm_results_read_folder(&results, folder, &root, error);
     char path[PATH_ROOM];
+    bool drawn;
+    if (status == PLM_OK && options->plots && root &&
+        (size_t)snprintf(path, sizeof path, "%s/plots", folder) < sizeof path)
+        status = plm_overview_plot(&results, path, &drawn, error);
     if (status == PLM_OK && (size_t)snprintf(path, sizeof path, "%s/report.html", folder) >= sizeof path)
         status = plm_fail(error, PLM_E_ARGUMENT, "the folder's name is too long");
     plm_report report = {.page.error = error, .folder = folder, .options = options, .results = &results, .root = root};

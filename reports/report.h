@@ -12,6 +12,7 @@ typedef struct plm_report_options {
     const char
         *validation; /**< folder that `validate` wrote; NULL: none, or the run's own where it holds agreement.csv */
     size_t views;    /**< the first so many plants with their whole picture and a 3D view; the others small pictures */
+    bool plots;      /**< draw folder/plots/overview.svg first; the page shows it wherever it is there */
 } plm_report_options;
 
 /** Writes folder/report.html from what the folder holds: run.json, traits.csv, the plants' pictures and views; or, where there
@@ -39,6 +40,9 @@ void plm_report_cards(plm_report *report);
 void plm_report_validation(plm_report *report, const char *folder);
 /** Version, options, inputs with their checksums, what was run. */
 void plm_report_provenance(plm_report *report);
+
+/** A plot of folder/plots as an object: the pointer over a point names the plant. Nothing where it is not there. */
+void plm_report_plot(plm_report *report, const char *folder, const char *name, const char *label);
 
 /** Whether folder/name is there. */
 bool plm_report_has(const char *folder, const char *name);

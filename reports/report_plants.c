@@ -106,7 +106,9 @@ void plm_report_summary(plm_report *report)
     }
     plm_html_print(page, "</tbody></table></div>\n<p class=\"note\">A dash: the scene does not give the value; a mark "
                          "(&bull;): the value has flags. The pointer over it says why. All values: traits.csv and "
-                         "plants.csv.</p>\n</section>\n");
+                         "plants.csv.</p>\n");
+    plm_report_plot(report, report->folder, "overview", "the main traits of every plant, 95 % bars");
+    plm_html_print(page, "</section>\n");
 }
 
 /* ---- A card ------------------------------------------------------------------------------------------------------ */

@@ -73,20 +73,21 @@ static size_t group_end(const plm_table *table, size_t first, const agreement_co
     return last;
 }
 
-/* An object and no image: so the pointer over a point of the plot names the plant. */
-static void put_plot(plm_html *page, const char *folder, const char *trait)
+void plm_report_plot(plm_report *report, const char *folder, const char *name, const char *label)
 {
+    plm_html *page = &report->page;
     char path[PATH_ROOM];
     plm_bytes file;
-    if (page->status != PLM_OK || strchr(trait, '/') ||
-        snprintf(path, sizeof path, "%s/plots/%s.svg", folder, trait) >= PATH_ROOM)
+    if (page->status != PLM_OK || strchr(name, '/') ||
+        snprintf(path, sizeof path, "%s/plots/%s.svg", folder, name) >= PATH_ROOM)
         return;
     const plm_status status = plm_bytes_open(path, &file, NULL);
     if (status == PLM_E_MEMORY) page->status = plm_fail(page->error, PLM_E_MEMORY, "out of memory for %s", path);
     if (status != PLM_OK) return;
-    plm_html_print(page, "<object class=\"plot\" type=\"image/svg+xml\" aria-label=\"");
-    plm_html_text(page, trait);
-    plm_html_print(page, ": estimate against manual, Bland-Altman, differences\" data=\"");
+    plm_html_print(page, "<object class=\"plot%s\" type=\"image/svg+xml\" aria-label=\"",
+                   strcmp(name, "overview") ? "" : " overview");
+    plm_html_text(page, label);
+    plm_html_print(page, "\" data=\"");
     plm_html_data_uri(page, "image/svg+xml", file.data, file.size);
     plm_html_print(page, "\"></object>\n");
     plm_bytes_close(&file);
@@ -119,7 +120,8 @@ void plm_report_validation(plm_report *report, const char *folder)
                    "the pointer over a value; all statistics: agreement.csv.</p>\n");
     for (size_t first = 0; first < table.rows; first = group_end(&table, first, &c))
         if (!strcmp(plm_table_cell(&table, first, c.group), "all"))
-            put_plot(page, folder, plm_table_cell(&table, first, c.trait));
+            plm_report_plot(report, folder, plm_table_cell(&table, first, c.trait),
+                            "estimate against manual, Bland-Altman, differences");
     plm_html_print(page, "</section>\n");
     plm_table_free(&table);
 }

@@ -8,7 +8,7 @@
 typedef struct report_settings {
     const char *validation;
     int views;
-    bool quiet;
+    bool plots, quiet;
 } report_settings;
 
 static const plm_option options[] = {
@@ -27,6 +27,10 @@ static const plm_option options[] = {
      .offset = offsetof(report_settings, views),
      .minimum = 0,
      .maximum = 1000000},
+    {.name = "plots",
+     .help = "draw the main traits of every plant too (gnuplot): RUN/plots/overview.svg and .png, with data and script",
+     .kind = PLM_OPTION_FLAG,
+     .offset = offsetof(report_settings, plots)},
     {.letter = 'q',
      .name = "quiet",
      .help = "print nothing but errors",
@@ -40,7 +44,8 @@ static int run(int argc, char **argv)
     const int usage = plm_parse_options(&plm_command_report, &argc, argv, &settings);
     if (usage >= 0) return usage;
     if (argc != 1) return plm_usage_error(&plm_command_report, "one folder was expected; found %d", argc);
-    const plm_report_options page = {.validation = settings.validation, .views = (size_t)settings.views};
+    const plm_report_options page = {
+        .validation = settings.validation, .views = (size_t)settings.views, .plots = settings.plots};
     plm_error error = {0};
     bool has_view = false;
     if (settings.validation && !plm_report_has(settings.validation, "agreement.csv")) {

@@ -7,6 +7,7 @@ printf 'plant_id,organ,organ_id,trait,value,unit\nplant,leaf,0,leaf_area,8,cm2\n
 plantimeter validate run/traits.csv manual.csv -o agreement -q || exit
 plantimeter report run --validation agreement && grep -c 'Agreement with manual' run/report.html
 plantimeter report agreement && grep -c 'Agreement with manual' agreement/report.html
+plantimeter report run --plots -q && ls run/plots | grep -v -e svg -e png && cut -d' ' -f6- run/plots/overview.dat
 echo 'what cannot be:'
 plantimeter report || echo "exit code $?"
 plantimeter report nowhere || echo "exit code $?"

@@ -191,7 +191,7 @@ plm_status write_view(const paths &files, plm_error *error)
 /* The page from tables, picture and view that are there. */
 plm_status write_page(const paths &files, plm_error *error)
 {
-    const plm_report_options options = {nullptr, 1};
+    const plm_report_options options = {nullptr, 1, false};
     bool has_view;
     return plm_report_write(files.home.c_str(), &options, &has_view, error);
 }
