@@ -5,6 +5,7 @@
 #include "mesh/mesh.h"
 
 #include "cloud/guard.hpp"
+#include "mesh/mesh_cluster.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
@@ -77,15 +78,8 @@ plm_status from_surface(const surface &made, const plm_mesh *like, organ_propert
     return PLM_OK;
 }
 
-} // namespace
-
-extern "C" plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, plm_mesh *out, plm_error *error)
+plm_status collapse(const plm_mesh *mesh, size_t triangles, plm_mesh *out, plm_error *error)
 {
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            if (mesh->triangle[i][k] >= mesh->vertex_count)
-                return plm_fail(error, PLM_E_ARGUMENT, "triangle %zu names vertex %u of a mesh of %zu vertices", i,
-                                mesh->triangle[i][k], mesh->vertex_count);
     return plm_guard(error, "OpenMesh decimation", [&] {
         surface made;
         organ_property organ;
@@ -116,4 +110,23 @@ extern "C" plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, 
         made.garbage_collection();
         return from_surface(made, mesh, organ, out, error);
     });
+}
+
+} // namespace
+
+extern "C" plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, plm_mesh *out, plm_error *error)
+{
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (mesh->triangle[i][k] >= mesh->vertex_count)
+                return plm_fail(error, PLM_E_ARGUMENT, "triangle %zu names vertex %u of a mesh of %zu vertices", i,
+                                mesh->triangle[i][k], mesh->vertex_count);
+    /* A collapse takes some ten microseconds: meshes far too fine are made coarser in linear time first. */
+    const size_t quick = 20000;
+    if (mesh->triangle_count <= quick || mesh->triangle_count <= 8 * triangles) return collapse(mesh, triangles, out, error);
+    plm_mesh coarse = {};
+    plm_status status = plm_mesh_cluster(mesh, 4 * triangles, &coarse, error);
+    if (status == PLM_OK) status = collapse(&coarse, triangles, out, error);
+    plm_mesh_free(&coarse);
+    return status;
 }

@@ -235,6 +235,7 @@ plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_e
         set(&b, "dropped", dropped_json(plant->read));
         set(&b, "unit", unit_json(plant));
     }
+    if (measurement) set(&b, "used_points", json_integer((json_int_t)measurement->used_points));
     if (report->georeference) set(&b, "place", place_json(report->georeference));
     if (measurement) {
         set(&b, "frame", frame_json(&measurement->frame));

@@ -41,6 +41,7 @@ plm_status measure_options_of(const measure_settings *settings, plm_measure_opti
     made.neighbours = settings->neighbours;
     made.alpha = settings->alpha;
     made.effort = (plm_effort)settings->effort;
+    made.points = (size_t)settings->points;
     made.habit = (plm_habit)settings->habit;
     made.seed = settings->seed;
 #ifndef PLM_WITHOUT_LIGHT

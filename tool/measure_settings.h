@@ -8,7 +8,7 @@ typedef struct measure_settings {
     reading_settings reading;
     const char *output, *traits, *ground, *correction, *share;
     double stem_height, alpha;
-    int neighbours, effort, habit, threads, files, views;
+    int neighbours, effort, points, habit, threads, files, views;
     uint64_t seed;
     bool force, quiet, json;
 } measure_settings;

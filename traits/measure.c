@@ -1,9 +1,9 @@
 /* traits/measure.c: one plant from cloud to values: the stages of the plan, one after the other. Each stage is a function
  * of the job; what a stage leaves out it tells the plan. */
-#include "cloud/spatial_order.h"
 #include "traits/axis.h"
 #include "traits/evaluate.h"
 #include "traits/plan.h"
+#include "traits/work.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,9 +17,8 @@ typedef struct plant_job {
     plm_measurement *draft;
     bool *chosen;     /* rows of the trait table */
     bool has_labels;  /* the cloud came with labels */
-    uint32_t *order;  /* work point i is row order[i] of the draft's cloud; NULL: the same order */
-    plm_cloud work;   /* the cloud in canonical order; empty where order is NULL */
-    plm_cloud *cloud; /* what the stages work on: &work or the draft's cloud */
+    plm_work work;    /* a copy of the draft's cloud: thinned, in canonical order */
+    plm_cloud *cloud; /* what the stages work on: the copy, where there is one, or the draft's cloud */
     uint8_t *label;   /* ground by plm_find_ground: of cloud's points; NULL where labels came with the cloud */
     bool *keep;       /* by plm_clean; NULL: all */
     plm_segmentation segmentation; /* of cloud's points; moves to the draft in the caller's order */
@@ -227,24 +226,22 @@ static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
     return status;
 }
 
-/* From here on the stages see the points in canonical order, where any of them looks at neighbours. */
-static plm_status put_in_order(plant_job *job, plm_error *error)
+/* From here on the stages see the points in canonical order, where any of them looks at neighbours, and of large clouds as
+ * many as the effort affords. */
+static plm_status choose_points(plant_job *job, plm_error *error)
 {
-    job->cloud = &job->draft->cloud;
-    if (!job->draft->plan.stage[PLM_STAGE_INDEX].runs) return PLM_OK;
-    const size_t count = job->cloud->count;
-    job->order = plm_alloc(count, sizeof *job->order, error);
-    if (!job->order) return PLM_E_MEMORY;
-    plm_status status = plm_spatial_order((const float(*)[3])job->cloud->xyz, count, job->order, error);
-    if (status == PLM_OK) status = plm_cloud_select(job->cloud, job->order, count, &job->work, error);
-    if (status == PLM_OK) job->cloud = &job->work;
+    plm_measurement *draft = job->draft;
+    const bool in_order = draft->plan.stage[PLM_STAGE_INDEX].runs;
+    const plm_status status = plm_work_make(&draft->cloud, plm_point_budget(job->options), in_order, &job->work, error);
+    job->cloud = job->work.row ? &job->work.cloud : &draft->cloud;
+    draft->used_points = job->work.count;
     return status;
 }
 
 static plm_status run_stages(plant_job *job, plm_error *error)
 {
     plm_status status = run_stage(job, PLM_STAGE_FRAME, error);
-    if (status == PLM_OK) status = put_in_order(job, error);
+    if (status == PLM_OK) status = choose_points(job, error);
     for (int id = PLM_STAGE_GROUND; id < PLM_STAGE_COUNT && status == PLM_OK; id++) {
         if (id == PLM_STAGE_INDEX) status = gather_plant(job, error);
         if (status == PLM_OK) status = run_stage(job, (plm_stage_id)id, error);
@@ -253,35 +250,6 @@ static plm_status run_stages(plant_job *job, plm_error *error)
 }
 
 /* ---- The measurement ------------------------------------------------------------------------------------------- */
-
-/* Brings the segmentation into the order of the caller's rows, and its labels into the cloud. */
-static plm_status give_labels(plant_job *job, plm_error *error)
-{
-    plm_segmentation *from = &job->segmentation, *to = &job->draft->segmentation;
-    plm_cloud *cloud = &job->draft->cloud;
-    if (!from->label) return PLM_OK;
-    plm_segmentation made = *from;
-    made.label = plm_alloc(from->count, sizeof *made.label, error);
-    made.organ = made.label ? plm_alloc(from->count, sizeof *made.organ, error) : NULL;
-    made.leaflet = made.organ && from->leaflet ? plm_alloc(from->count, sizeof *made.leaflet, error) : NULL;
-    if (!cloud->label && made.organ) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
-    if (!cloud->organ && made.organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
-    if (!made.organ || (from->leaflet && !made.leaflet) || !cloud->label || !cloud->organ) {
-        plm_free(made.label);
-        plm_free(made.organ);
-        plm_free(made.leaflet);
-        return PLM_E_MEMORY;
-    }
-    for (size_t i = 0; i < from->count; i++) {
-        const size_t row = job->order ? job->order[i] : i;
-        cloud->label[row] = made.label[row] = from->label[i];
-        cloud->organ[row] = made.organ[row] = from->organ[i];
-        if (made.leaflet) made.leaflet[row] = from->leaflet[i];
-    }
-    from->leaf_flags = NULL; /* moved with the struct */
-    *to = made;
-    return PLM_OK;
-}
 
 /* Centroids in the frame of the cloud that was handed in. */
 static void turn_centroids_back(plm_measurement *draft)
@@ -301,9 +269,8 @@ static void free_job(plant_job *job)
     plm_segmentation_free(&job->segmentation);
     plm_free(job->keep);
     plm_free(job->label);
-    plm_free(job->order);
     plm_free(job->chosen);
-    plm_cloud_free(&job->work);
+    plm_work_free(&job->work);
 }
 
 /* Readers drop what is no number; a program that hands over a cloud may not have. */
@@ -332,7 +299,8 @@ plm_status plm_measure(plm_cloud *cloud, const plm_measure_options *options, plm
     if (status == PLM_OK && !(job.chosen = plm_alloc(trait_count, sizeof *job.chosen, error))) status = PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_trait_choose(options->traits, job.chosen, error);
     if (status == PLM_OK) status = run_stages(&job, error);
-    if (status == PLM_OK) status = give_labels(&job, error);
+    if (status == PLM_OK && job.segmentation.label)
+        status = plm_work_give_labels(&job.work, &job.segmentation, &draft.cloud, &draft.segmentation, error);
     free_job(&job);
     if (status == PLM_OK) {
         turn_centroids_back(&draft);

@@ -51,6 +51,13 @@ void plm_measure_defaults(plm_measure_options *options)
     *options = (plm_measure_options){.stem_height = 0.02, .neighbours = 16, .effort = PLM_EFFORT_BALANCED};
 }
 
+size_t plm_point_budget(const plm_measure_options *options)
+{
+    static const size_t by_effort[] = {
+        [PLM_EFFORT_FAST] = 50000, [PLM_EFFORT_BALANCED] = 400000, [PLM_EFFORT_PRECISE] = 0};
+    return options->points ? options->points : by_effort[options->effort];
+}
+
 /* ---- The list of traits ---------------------------------------------------------------------------------------- */
 
 static const char *trait_name(const void *table, size_t i)

@@ -26,6 +26,9 @@ typedef enum plm_stage_id {
  * PLM_E_ARGUMENT  an unknown name (the message names the nearest one), or no name at all. */
 plm_status plm_trait_choose(const char *list, bool *chosen, plm_error *error);
 
+/** The most points that the stages look at: options->points, or by effort; 0: all. */
+size_t plm_point_budget(const plm_measure_options *options);
+
 /** Marks a stage as left out, with a printf-style reason. */
 void plm_plan_leave_out(plm_plan *plan, plm_stage_id stage, const char *format, ...) PLM_PRINTF(3, 4);
 

@@ -93,6 +93,8 @@ typedef plm_status plm_light_function(const plm_mesh *mesh, const int32_t *face_
                                       uint64_t seed, double *group_power, double *group_std_error, double *power,
                                       double *std_error, plm_error *error);
 
+/** How much of a large cloud is looked at: about 50 000 points, 400 000, or all. What is left out is
+ * random: the spacing grows, and errors and standard errors with it. */
 typedef enum plm_effort { PLM_EFFORT_FAST = 0, PLM_EFFORT_BALANCED, PLM_EFFORT_PRECISE } plm_effort;
 
 /** Options of a measurement. Fill with plm_measure_defaults first. */
@@ -106,6 +108,7 @@ typedef struct plm_measure_options {
     int neighbours;       /**< of the smoothness factor */
     double alpha;         /**< leaf surface, metres; 0: found out */
     plm_effort effort;
+    size_t points; /**< look at about so many points; 0: by effort */
     plm_habit habit;
     uint64_t seed;
     bool is_splat;             /**< the cloud holds gaussians (extent is set) */
@@ -179,7 +182,8 @@ typedef struct plm_trait_value {
 typedef struct plm_measurement {
     size_t value_count;
     plm_trait_value *value;
-    plm_cloud cloud; /**< the cloud in the plant's frame (z up), all points, with label and organ */
+    plm_cloud cloud;    /**< the cloud in the plant's frame (z up), all points, with label and organ */
+    size_t used_points; /**< points that were looked at; fewer than the cloud's where effort thins it */
     plm_segmentation segmentation;
     plm_frame frame;
     plm_ground ground;

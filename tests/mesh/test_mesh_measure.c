@@ -185,6 +185,27 @@ static void decimation_keeps_a_flat_surface_and_its_organs(void **unused)
     plm_mesh_free(&mesh);
 }
 
+/* A mesh far too fine is made coarser first: its area and rim stay to within a cube, and so do its organs. */
+static void decimation_of_a_fine_mesh_stays_near_its_shape(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    const double place[3] = {1, 2, 3};
+    plm_mesh mesh = rectangle(2, 1, plm_radians(30), 1, place, 150), fewer;
+    mesh.face_organ = plm_alloc(mesh.triangle_count, sizeof *mesh.face_organ, &error);
+    for (size_t i = 0; i < mesh.triangle_count; i++) mesh.face_organ[i] = 4;
+    assert_true(mesh.triangle_count > 8 * 1000);
+    assert_ok(plm_mesh_decimate(&mesh, 1000, &fewer, &error));
+    double area = 0;
+    assert_ok(plm_mesh_area(&fewer, &area, &error));
+    assert_near(area, 2, 0.1); /* half a cube, 0.016, is lost along a rim of 6 */
+    assert_true(fewer.triangle_count <= 1000 && fewer.triangle_count >= 500);
+    for (size_t i = 0; i < fewer.triangle_count; i++) assert_int_equal(fewer.face_organ[i], 4);
+    for (int axis = 0; axis < 3; axis++) assert_true(fewer.origin[axis] == mesh.origin[axis]);
+    plm_mesh_free(&fewer);
+    plm_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +215,7 @@ int main(void)
         cmocka_unit_test(sphere_of_triangles_has_equal_moments_and_looks_up),
         cmocka_unit_test(meshes_without_area_or_with_wrong_indices_say_so),
         cmocka_unit_test(decimation_keeps_a_flat_surface_and_its_organs),
+        cmocka_unit_test(decimation_of_a_fine_mesh_stays_near_its_shape),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
