@@ -123,7 +123,8 @@ extern "C" plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, 
                                 mesh->triangle[i][k], mesh->vertex_count);
     /* A collapse takes some ten microseconds: meshes far too fine are made coarser in linear time first. */
     const size_t quick = 20000;
-    if (mesh->triangle_count <= quick || mesh->triangle_count <= 8 * triangles) return collapse(mesh, triangles, out, error);
+    if (mesh->triangle_count <= quick || mesh->triangle_count <= 8 * triangles)
+        return collapse(mesh, triangles, out, error);
     plm_mesh coarse = {};
     plm_status status = plm_mesh_cluster(mesh, 4 * triangles, &coarse, error);
     if (status == PLM_OK) status = collapse(&coarse, triangles, out, error);
