@@ -75,7 +75,7 @@ static plm_status measure_one(const plm_scene *scene, const call *made, plm_esti
         plm_trait_failed(out, "the value came out as %g", out->value);
     if (out->state != PLM_STATE_OK) out->value = out->std_error = NAN;
     if (organ && out->state == PLM_STATE_OK) out->flags |= organ->flags;
-    if (out->std_error < 0 || isinf(out->std_error)) out->std_error = NAN;
+    if (!isnan(out->std_error) && (out->std_error < 0 || isinf(out->std_error))) out->std_error = NAN;
     return PLM_OK;
 }
 

@@ -37,6 +37,7 @@ typedef struct fit {
     double cost, scale;
     int steps;
     bool converged;
+    plm_fit_end end;
 } fit;
 
 static void set_axis(problem *p, const double x[])
@@ -147,6 +148,7 @@ static void descend(problem *p, fit *f, double tolerance, double *matrix, double
     double damping = 1e-3, column_scale[PLM_TUBE_PARAMETERS] = {0};
     f->cost = cost_of(p, f->scale);
     f->converged = false;
+    f->end = PLM_FIT_STEPS_SPENT;
     bool moved = true;
     for (int k = 0; k < STEPS && !f->converged; k++, f->steps++) {
         if (moved) accumulate(p, f->x, f->scale, p->limit, matrix, gradient);
@@ -173,8 +175,12 @@ static void descend(problem *p, fit *f, double tolerance, double *matrix, double
             }
         }
         damping = moved ? fmax(damping * 0.1, 1e-12) : damping * 8;
-        if (damping > 1e12) break;
+        if (damping > 1e12 && !f->converged) {
+            f->end = PLM_FIT_NO_DESCENT;
+            break;
+        }
     }
+    if (f->converged) f->end = PLM_FIT_SMALL_STEP;
     evaluate(p, f->x);
 }
 
@@ -304,8 +310,11 @@ static double coverage_of(const problem *p, double limit)
 static bool conclude(problem *p, const fit *best, double *matrix, double *work, plm_tube *tube)
 {
     const int n = p->size;
-    plm_tube out = {
-        .axis = p->axis, .iteration_count = best->steps, .converged = best->converged, .parameter_count = n};
+    plm_tube out = {.axis = p->axis,
+                    .iteration_count = best->steps,
+                    .converged = best->converged,
+                    .end = best->end,
+                    .parameter_count = n};
     out.radius[0] = best->x[2 * p->basis];
     out.radius[1] = n > 2 * p->basis + 1 ? best->x[2 * p->basis + 1] : 0;
     out.robust_sd = robust_sd(p);

@@ -7,6 +7,13 @@
 
 enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 2, PLM_TUBE_SECTORS = 24 };
 
+/** Why a fit ended. */
+typedef enum plm_fit_end {
+    PLM_FIT_STEPS_SPENT = 0, /**< the most steps were taken: not converged */
+    PLM_FIT_SMALL_STEP,      /**< the last step was below 1e-9 of the radius: converged */
+    PLM_FIT_NO_DESCENT /**< no step, however short, lowered the cost: at the rounding of the residuals, or stuck */
+} plm_fit_end;
+
 /** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the two of the radius. */
 typedef struct plm_tube {
     plm_curve axis;
@@ -18,6 +25,7 @@ typedef struct plm_tube {
     double condition; /**< of the fit: large where short arcs leave radius and axis undetermined */
     int iteration_count;
     bool converged;
+    plm_fit_end end; /**< of the last round */
     int parameter_count;
     double covariance[PLM_TUBE_PARAMETERS][PLM_TUBE_PARAMETERS]; /**< of the parameters, from inlying residuals */
 } plm_tube;

@@ -44,6 +44,7 @@ static void exact_tubes_are_found_at_any_scale_and_from_short_arcs(void **unused
         plm_tube fitted;
         assert_ok(fit(&tube, xyz, POINTS, &fitted, &error));
         assert_true(fitted.converged);
+        assert_int_equal(fitted.end, PLM_FIT_SMALL_STEP);
         assert_near(radius_at(&fitted, &tube, 0.5, NULL) / (0.2 * scale), 1, 1e-6);
         assert_near(fitted.coverage, width / (2 * PLM_PI), 0.09); /* two sectors of 24 */
     }
