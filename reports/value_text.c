@@ -7,7 +7,7 @@
 
 const char *plm_value_text(double value, double std_error, const char *unit, char out[PLM_VALUE_ROOM])
 {
-    if (std_error > 0 && isfinite(std_error)) {
+    if (isfinite(std_error) && std_error > 0) {
         const double magnitude = floor(log10(std_error));
         const int decimals = magnitude >= 1 ? 0 : magnitude < -8 ? 9 : 1 - (int)magnitude;
         snprintf(out, PLM_VALUE_ROOM, "%.*f ± %.*f", decimals, value, decimals, std_error);

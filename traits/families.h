@@ -46,7 +46,7 @@ PLM_TRAIT_FUNCTION(plm_trait_petiole_diameter);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_insertion_angle);
 PLM_TRAIT_FUNCTION(plm_trait_internode_length);
 
-/* traits/plant_height.c: Condition 1: differences of two extremes, each known to noise and spacing. Above ground: the soil's plane too. */
+/* traits/plant_height.c: Condition: how far out the plant lies over its height; differences of two extremes, each known to noise and spacing. Above ground: the soil's plane too. */
 PLM_TRAIT_FUNCTION(plm_trait_plant_height);
 PLM_TRAIT_FUNCTION(plm_trait_height_above_ground);
 PLM_TRAIT_FUNCTION(plm_trait_height_p98);
@@ -71,7 +71,7 @@ PLM_TRAIT_FUNCTION(plm_trait_hull_area);
 /* traits/plant_area.c: Condition 1; the rim of the silhouette is known to a cell. */
 PLM_TRAIT_FUNCTION(plm_trait_projected_area);
 
-/* traits/plant_light.c */
+/* traits/plant_light.c: Condition about 1 in the area of the surfaces; the rays' own error goes with 1 / sqrt(rays). */
 PLM_TRAIT_FUNCTION(plm_trait_absorbed_radiation);
 PLM_TRAIT_FUNCTION(plm_trait_leaf_absorbed_radiation);
 
