@@ -21,9 +21,10 @@ typedef struct plm_leaf_points {
 } plm_leaf_points;
 
 /** Takes count points, in any order: the result is the same for every order. More than most of them are thinned by a hash
- * of their coordinates. Parts are joined by edges to the 8 nearest neighbours that are not much longer than others; parts
+ * of their coordinates. fused: the points are voxel means, 1 yes, 0 no, -1 found out; of such, those that lie apart from the
+ * others (ghosts off the rim) are left out. Parts are joined by edges to the 8 nearest neighbours that are not much longer than others; parts
  * too small to be a surface are dropped. The result is the caller's. PLM_E_DEGENERATE: fewer than 12 places. */
-plm_status plm_leaf_points_make(const float (*xyz)[3], size_t count, size_t most, plm_leaf_points *points,
+plm_status plm_leaf_points_make(const float (*xyz)[3], size_t count, size_t most, int fused, plm_leaf_points *points,
                                 plm_error *error);
 
 void plm_leaf_points_free(plm_leaf_points *points);

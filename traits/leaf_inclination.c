@@ -6,7 +6,7 @@
 #include <math.h>
 
 /* Facets on noisy leaves: what the smoothing leaves of the noise tilts them. Measured on virtual plants. */
-static const double facet_spread_share = 0.03, facet_noise_share = 0.03;
+static const double facet_spread_share = 0.05, facet_noise_share = 0.03;
 
 plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
                                       plm_error *error)

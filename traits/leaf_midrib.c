@@ -19,6 +19,8 @@ enum {
 };
 
 static const double contact_share = 0.005; /* of the nodes: those nearest to the petiole make the junction */
+/* Spacings of nodes around the mean of these contacts within which the blade's end is sought: lobes beside it are further. */
+static const double contact_reach = 4.0;
 
 /* Nodes within this share of the furthest distance, and this near to the furthest one, make the tip. */
 static const double tip_share = 0.03, tip_reach = 0.15;
@@ -225,12 +227,25 @@ static size_t furthest_node(const way *w)
     return best;
 }
 
+/* How far the surface reaches from a place in a direction, among its vertices within a radius. Nodes are only some of the
+ * vertices: the outermost of them lies inside by as much as they lie apart. */
+static double reach_from(const plm_mesh *mesh, const double place[3], const double direction[3], double radius)
+{
+    double furthest = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        double d[3];
+        for (int i = 0; i < 3; i++) d[i] = mesh->vertex[v][i] - place[i];
+        if (plm_norm(d) <= radius) furthest = fmax(furthest, plm_dot(d, direction));
+    }
+    return furthest;
+}
+
 /* The tip: in the middle, across the leaf, of the nodes that are nearly as far as the furthest one, and as far out as
- * they reach. The furthest one alone lies anywhere along a round end. */
-static void place_tip(const way *w, size_t last, const double base[3], double tip[3])
+ * the surface reaches there. The furthest one alone lies anywhere along a round end. */
+static void place_tip(const way *w, const plm_mesh *mesh, size_t last, const double base[3], double tip[3])
 {
     const double far = w->distance[last], near_far = (1 - tip_share) * far, reach = tip_reach * far;
-    double middle[3] = {0, 0, 0}, out[3], count = 0, furthest = 0;
+    double middle[3] = {0, 0, 0}, out[3], count = 0;
     for (size_t j = 0; j < w->surface; j++) {
         if (w->distance[j] < near_far || gap_between(w->xyz[j], w->xyz[last]) > reach) continue;
         for (int i = 0; i < 3; i++) middle[i] += w->xyz[j][i];
@@ -241,12 +256,18 @@ static void place_tip(const way *w, size_t last, const double base[3], double ti
         out[i] = middle[i] - base[i];
     }
     plm_normalise(out);
-    for (size_t j = 0; j < w->surface; j++) {
-        if (w->distance[j] < near_far || gap_between(w->xyz[j], w->xyz[last]) > reach) continue;
-        const double d[3] = {w->xyz[j][0] - middle[0], w->xyz[j][1] - middle[1], w->xyz[j][2] - middle[2]};
-        furthest = fmax(furthest, plm_dot(d, out));
-    }
+    const double furthest = reach_from(mesh, middle, out, reach);
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
+}
+
+/* Moves the junction out to the end of the surface there: the mean of contacts lies inside by their own spread. */
+static void move_base(const plm_mesh *mesh, double area, const double tip[3], double base[3])
+{
+    double out[3];
+    for (int i = 0; i < 3; i++) out[i] = base[i] - tip[i];
+    plm_normalise(out);
+    const double furthest = reach_from(mesh, base, out, contact_reach * sqrt(area / NODES));
+    for (int i = 0; i < 3; i++) base[i] += furthest * out[i];
 }
 
 static double error_of_ends(const plm_leaf_surface *surface)
@@ -266,7 +287,8 @@ static plm_status simple_midrib(const plm_organ *leaf, const plm_organ *holder, 
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
         const size_t last = furthest_node(&w);
-        place_tip(&w, last, out->base, out->tip);
+        place_tip(&w, &leaf->surface.mesh, last, out->base, out->tip);
+        move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, out->base);
         draw_line(&w, start, last, out->base, out->tip, &line);
         out->length = line.length;
         status = plm_midrib_width(&leaf->surface.mesh, &line, &out->width, error);
@@ -324,7 +346,7 @@ static plm_status compound_midrib(const plm_scene *scene, const plm_organ *leaf,
         const size_t first = first_junction(&w, touch);
         double junction[3], direction[3];
         for (int i = 0; i < 3; i++) junction[i] = w.xyz[first][i];
-        place_tip(&w, last, junction, out->tip);
+        place_tip(&w, &leaf->surface.mesh, last, junction, out->tip);
         for (int i = 0; i < 3; i++) direction[i] = out->tip[i] - junction[i];
         draw_line(&w, first, last, junction, out->tip, &line);
         out->length = line.length;
@@ -347,8 +369,8 @@ plm_status plm_midrib_find(const plm_scene *scene, const plm_organ *leaf, plm_mi
     const plm_status status =
         compound ? compound_midrib(scene, leaf, petiole, made, error) : simple_midrib(leaf, holder, made, error);
     made->end_error = error_of_ends(&leaf->surface);
-    made->length_error = hypot(1.5 * made->end_error, 0.02 * made->length);
-    made->width_error = hypot(made->end_error, 0.02 * made->width);
+    made->length_error = hypot(1.5 * made->end_error, 0.014 * made->length);
+    made->width_error = hypot(made->end_error, 0.014 * made->width);
     if (status == PLM_OK)
         *midrib = made;
     else
