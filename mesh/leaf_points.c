@@ -21,8 +21,9 @@ static const double smallest_share = 0.001; /* of the points: smaller parts are 
 /* Edges join a part up to 5 median or 1.5 x 90th percentile of the distance to the 8th neighbour: a fixed small radius
  * loses sparse, half-hidden pieces unseen (study on virtual lettuce: up to 19 % of a leaf). */
 static const double link_median = 5.0, link_high = 1.5;
-/* Distance to the 8th neighbour against its median beyond which a voxel mean is no leaf: 1.4 at a straight rim. */
-static const double supported_reach = 1.6;
+/* Distance to the 8th neighbour against its median and against that of its neighbours beyond which a voxel mean
+ * is no leaf: 1.4 at a straight rim. */
+static const double supported_reach = 1.6, supported_beside = 1.2;
 
 /* Copies the points named by row to xyz in canonical order, each place once; gives how many places there are. */
 static plm_status order_points(const float (*given)[3], const uint32_t *row, size_t count, float (*xyz)[3],
@@ -136,14 +137,26 @@ static plm_status find_neighbours(plm_leaf_points *points, uint32_t *neighbour, 
     return PLM_OK;
 }
 
-/* Voxel means lie evenly on a leaf: points with much fewer neighbours than others are ghosts off its rim. Leaves them out;
- * gives how many there were. */
-static size_t drop_unsupported(plm_leaf_points *points, double limit)
+/* Voxel means lie evenly on a leaf: points with much fewer neighbours than others are ghosts off its rim, unless all of them
+ * there have as few (a part that the cameras saw from the side). Leaves the ghosts out; gives how many there were. */
+static size_t drop_unsupported(plm_leaf_points *points, const uint32_t *neighbour, double median)
 {
+    enum { K = LINK_NEIGHBOURS };
     size_t kept = 0;
-    for (size_t i = 0; i < points->count; i++)
-        if (points->reach[i] <= limit) memmove(points->xyz[kept++], points->xyz[i], sizeof *points->xyz);
+    for (size_t i = 0; i < points->count; i++) {
+        double near[K];
+        bool ghost = points->reach[i] > supported_reach * median;
+        if (ghost) {
+            for (size_t j = 0; j < K; j++) near[j] = points->reach[neighbour[i * K + j]];
+            ghost = points->reach[i] > supported_beside * plm_select_quantile(near, K, 0.5);
+        }
+        if (!ghost) kept++;
+        points->component[i] = ghost;
+    }
     const size_t dropped = points->count - kept;
+    kept = 0;
+    for (size_t i = 0; i < points->count; i++)
+        if (!points->component[i]) memmove(points->xyz[kept++], points->xyz[i], sizeof *points->xyz);
     points->count = kept;
     return dropped;
 }
@@ -164,7 +177,7 @@ static plm_status find_parts(plm_leaf_points *points, int fused, plm_error *erro
     if (status == PLM_OK && fused >= 0) points->fused = fused > 0;
     for (int round = 0; round < SUPPORT_ROUNDS && status == PLM_OK && points->fused; round++) {
         const size_t before = points->count;
-        if (drop_unsupported(points, supported_reach * median) == 0) break;
+        if (drop_unsupported(points, neighbour, median) == 0) break;
         if (points->count < SMALLEST_PART)
             status = plm_fail(error, PLM_E_DEGENERATE, "of the leaf's %zu points too few lie close together", before);
         if (status == PLM_OK) status = find_neighbours(points, neighbour, squared, sorted, &median, error);

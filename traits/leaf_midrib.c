@@ -19,8 +19,9 @@ enum {
 };
 
 static const double contact_share = 0.005; /* of the nodes: those nearest to the petiole make the junction */
-/* Spacings of nodes around the mean of these contacts within which the blade's end is sought: lobes beside it are further. */
-static const double contact_reach = 4.0;
+/* Spacings of nodes around the mean of these contacts outward and aside within which the blade ends: the lobes of a
+ * heart-shaped base lie further aside. */
+static const double contact_reach = 2.5, contact_aside = 1.0;
 
 /* Nodes within this share of the furthest distance, and this near to the furthest one, make the tip. */
 static const double tip_share = 0.03, tip_reach = 0.15;
@@ -227,15 +228,18 @@ static size_t furthest_node(const way *w)
     return best;
 }
 
-/* How far the surface reaches from a place in a direction, among its vertices within a radius. Nodes are only some of the
+/* How far the surface reaches from a place in a direction, at most `most`, among its vertices that are within `aside` of that
+ * line. Nodes are only some of the
  * vertices: the outermost of them lies inside by as much as they lie apart. */
-static double reach_from(const plm_mesh *mesh, const double place[3], const double direction[3], double radius)
+static double reach_from(const plm_mesh *mesh, const double place[3], const double direction[3], double most,
+                         double aside)
 {
     double furthest = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         double d[3];
         for (int i = 0; i < 3; i++) d[i] = mesh->vertex[v][i] - place[i];
-        if (plm_norm(d) <= radius) furthest = fmax(furthest, plm_dot(d, direction));
+        const double along = plm_dot(d, direction), across = sqrt(fmax(plm_dot(d, d) - along * along, 0));
+        if (along <= most && across <= aside) furthest = fmax(furthest, along);
     }
     return furthest;
 }
@@ -256,17 +260,17 @@ static void place_tip(const way *w, const plm_mesh *mesh, size_t last, const dou
         out[i] = middle[i] - base[i];
     }
     plm_normalise(out);
-    const double furthest = reach_from(mesh, middle, out, reach);
+    const double furthest = reach_from(mesh, middle, out, reach, reach);
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
 }
 
 /* Moves the junction out to the end of the surface there: the mean of contacts lies inside by their own spread. */
 static void move_base(const plm_mesh *mesh, double area, const double tip[3], double base[3])
 {
-    double out[3];
+    double out[3], node = sqrt(area / NODES);
     for (int i = 0; i < 3; i++) out[i] = base[i] - tip[i];
     plm_normalise(out);
-    const double furthest = reach_from(mesh, base, out, contact_reach * sqrt(area / NODES));
+    const double furthest = reach_from(mesh, base, out, contact_reach * node, contact_aside * node);
     for (int i = 0; i < 3; i++) base[i] += furthest * out[i];
 }
 
