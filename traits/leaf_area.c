@@ -1,17 +1,29 @@
 /* traits/leaf_area.c: area of leaves, and how it depends on alpha. */
 #include "traits/families.h"
+#include "traits/leaf_midrib.h"
 #include "traits/leaf_surfaces.h"
 
 #include <math.h>
 
 static const char *const method = "smoothed triangulation, local alpha";
 
+/* A found junction that is off takes a piece of the petiole to the leaf or the other way: some three thicknesses wide, as it
+ * widens into the blade. */
+static const double junction_width = 3.0;
+
+static double error_of_area(const plm_organ *leaf)
+{
+    const plm_midrib *midrib = leaf->midrib;
+    return hypot(leaf->surface.area_std_error,
+                 midrib ? junction_width * midrib->thickness * midrib->junction_error : 0);
+}
+
 plm_status plm_trait_leaf_area(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out, plm_error *error)
 {
     (void)scene, (void)error;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
     out->value = leaf->surface.area;
-    out->std_error = leaf->surface.area_std_error;
+    out->std_error = error_of_area(leaf);
     out->method = method;
     return PLM_OK;
 }
@@ -32,8 +44,9 @@ plm_status plm_trait_total_leaf_area(const plm_scene *scene, const plm_organ *or
             continue;
         }
         sum += leaf->surface.area;
-        errors += leaf->surface.area_std_error;
-        squares += leaf->surface.area_std_error * leaf->surface.area_std_error;
+        const double error_of_leaf = error_of_area(leaf);
+        errors += error_of_leaf;
+        squares += error_of_leaf * error_of_leaf;
         points += leaf->count;
         leaves++;
     }

@@ -11,6 +11,8 @@ typedef struct plm_midrib {
     double end_error;            /**< standard error of either end, along any direction */
     double length, length_error; /**< arc from the junction (compound: of the first leaflet) to the tip */
     double width, width_error; /**< largest section along the surface; compound: extent across the leaf in its plane */
+    double thickness;          /**< of the organ that the leaf hangs on, from its points */
+    double junction_error;     /**< standard error of where that organ ends, where its label was found; else 0 */
     bool compound;
     const char *method; /**< static text */
 } plm_midrib;

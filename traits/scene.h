@@ -36,8 +36,9 @@ struct plm_scene {
     const plm_ground *ground;
     plm_habit habit;
     bool is_splat, has_colour;
-    size_t plant_count;     /* points of the plant: not ground, not noise */
-    float (*plant)[3];      /* their offsets */
+    bool labels_given;  /* with the cloud: organs end where they say. Else they were found, and their ends are unsure */
+    size_t plant_count; /* points of the plant: not ground, not noise */
+    float (*plant)[3];  /* their offsets */
     uint32_t *plant_row;    /* rows of cloud */
     plm_index *plant_index; /* over plant; NULL below 12 points, and where no trait needs neighbours, organs or hull: a
                                height alone builds no index and must find its own scales in the bands that it reads */
