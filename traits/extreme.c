@@ -27,6 +27,8 @@ static const double noise_unknown = 0.5;
 /* Distance to the 8th neighbour on a sheet in spacings, and by which factor it may be exceeded: in voxel means, which are
  * even, points of the plant reach 1.7 at leaf tips, ghosts begin at 1.2. Elsewhere against that of the neighbours. */
 static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach = 3.0;
+/* ... and against the whole plant's, as floaters have floaters beside them: splats are 20-fold uneven, a factor of 4.5. */
+static const double alone_reach = 6.0;
 
 /* ---- Projection ------------------------------------------------------------------------------------------------ */
 
@@ -131,7 +133,9 @@ bool plm_is_supported(const plm_index *index, const float (*xyz)[3], const float
     uint32_t row[SUPPORT + 1], ignored[SUPPORT + 1];
     const double reach = reach_at(index, point, row);
     if (!isfinite(reach)) return true; /* too few points to tell */
-    if (sampling->fused) return reach <= fused_reach * reach_per_spacing * sampling->spacing;
+    const double usual = reach_per_spacing * sampling->spacing;
+    if (reach > (sampling->fused ? fused_reach : alone_reach) * usual) return false;
+    if (sampling->fused) return true;
     double near[SUPPORT];
     for (int i = 0; i < SUPPORT; i++) near[i] = reach_at(index, xyz[row[i + 1]], ignored);
     qsort(near, SUPPORT, sizeof *near, ascending);

@@ -15,6 +15,8 @@ enum { FINEST_VOXELS = 200, COARSEST_VOXELS = 50 };
 static const double most_lonely = 0.3;
 /* Turn of the axis times relative gap of the eigenvalues, radians: 0.006 clean, 0.013 in noise, on virtual plants. */
 static const double axis_turn = 0.012;
+/* A pair of points that is wider apart than the surface there by this factor holds stray points. */
+static const double stray_share = 1.02;
 
 static plm_status extent_along(const plm_scene *scene, const double axis[3], double *extent, double *std_error,
                                plm_error *error)
@@ -88,13 +90,35 @@ static double widest_direction(const float (*xyz)[3], size_t count, double direc
     return widest;
 }
 
+/* The widest extent of the surface itself, where stray points make the widest pair: by 5 degrees, then finer about the best. */
+static plm_status widest_extent(const plm_scene *scene, plm_estimate *out, plm_error *error)
+{
+    enum { COARSE = 36, FINE = 4 };
+    double step = PLM_PI / COARSE, best = 0;
+    plm_status status = PLM_OK;
+    out->value = -INFINITY;
+    for (int k = 0; k < COARSE + 2 * FINE && status == PLM_OK; k++) {
+        if (k >= COARSE && k % 2 == 0) step /= 2;
+        const double angle = k < COARSE ? k * step : best + (k % 2 ? -step : step);
+        double extent, std_error;
+        status = extent_along(scene, (const double[3]){cos(angle), sin(angle), 0}, &extent, &std_error, error);
+        if (status != PLM_OK || extent <= out->value) continue;
+        best = angle;
+        out->value = extent;
+        out->std_error = std_error;
+    }
+    return status;
+}
+
 plm_status plm_trait_plant_width(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
     double direction[3];
-    widest_direction((const float(*)[3])scene->plant, scene->plant_count, direction);
+    const double widest = widest_direction((const float(*)[3])scene->plant, scene->plant_count, direction);
     out->method = "widest pair";
-    return extent_along(scene, direction, &out->value, &out->std_error, error);
+    const plm_status status = extent_along(scene, direction, &out->value, &out->std_error, error);
+    if (status != PLM_OK || widest <= stray_share * out->value) return status;
+    return widest_extent(scene, out, error);
 }
 
 /* ---- Principal axes ----------------------------------------------------------------------------------------------- */

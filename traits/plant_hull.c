@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HALVES = 12, MOST_PEELS = 12 };
+enum { HALVES = 12, MOST_PEELS = 24 };
 
 /** The hull after projection, and of random halves. */
 typedef struct hull_measure {
