@@ -4,18 +4,22 @@
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double THICK = 0.5; /* of the stem's radius: a tube that may be stem */
 static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
-static const double THIN_END = 0.55;   /* of the lower stem's radius: the stem has become a petiole */
-static const double LOWER_SHARE = 0.6; /* of the path: where the stem's radius is taken from */
-static const double RISE_LEAST = 0.2;  /* of the size: a plant that rises less has no stem */
-static const double STEP = 0.25;       /* nodes, in R */
-static const double WINDOW = 1;        /* half window of centring and of the radius, in R */
-static const double REACH = 2;         /* points within so many stem radii centre the path */
-static const double MARGIN = 1.1;      /* points within so many radii (plus sigma) are stem */
-static double MARGIN_BLADE = 1.15;     /* the same for points that look like blade */
+static const double THIN_END = 0.55; /* of the lower stem's radius: the stem has become a petiole */
+static const double THIN_WAY = 0.6;  /* of the radius on the way so far (over MEMORY, in R): thinner is no stem, ... */
+static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at most to this share of the lower stem's */
+static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
+static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
+static const double RISE_LEAST = 0.2;         /* of the size: a plant that rises less has no stem */
+static const double STEP = 0.25;              /* nodes, in R */
+static const double WINDOW = 1;               /* half window of centring and of the radius, in R */
+static const double REACH = 2;                /* points within so many stem radii centre the path */
+static const double MARGIN = 1.1;             /* points within so many radii (plus sigma) are stem */
+static double MARGIN_BLADE = 1.15;            /* the same for points that look like blade */
 enum { CENTRING_ROUNDS = 3 };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */
@@ -77,6 +81,68 @@ static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm
         (void)components;
         for (size_t i = 0; i < count; i++)
             candidate[i] = component[i] >= 0 && is_thick(sketch, i) && length[component[i]] >= 0.2 * longest;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+typedef struct ranked {
+    float distance;
+    uint32_t point;
+} ranked;
+
+static int by_distance(const void *a, const void *b)
+{
+    const ranked *p = a, *q = b;
+    if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
+    return (p->point > q->point) - (p->point < q->point);
+}
+
+/* Typical radius of the tube points on the lower part of the way from a point to the base. */
+static double lower_radius(const plm_sketch *sketch, uint32_t top, const uint32_t *parent, float *value)
+{
+    size_t length = 0, count = 0, k = 0;
+    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) length++;
+    for (uint32_t i = top; i != UINT32_MAX; i = parent[i], k++)
+        if ((double)(length - k) < LOWER_SHARE * (double)length && sketch->is_tube[i])
+            value[count++] = sketch->point[i].radius;
+    return count ? plm_quantile(value, count, 0.5) : sketch->scale.stem_radius;
+}
+
+/* The end of the stem: the point to which the way from the base is thick for the longest, what is thin on the way taken
+ * off twice. The highest thick point may stand on a petiole that rises beyond the stem's tip. */
+static plm_status thickest_way(const plm_sketch *sketch, const float *distance, const uint32_t *parent, uint32_t *top,
+                               plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    ranked *order = plm_scratch_take(&scratch, count, sizeof *order);
+    float *gain = plm_scratch_take(&scratch, count, sizeof *gain);
+    float *usual = plm_scratch_take(&scratch, count, sizeof *usual); /* radius of the stem on the way so far */
+    if (!scratch.failed) {
+        const float lower = (float)lower_radius(sketch, *top, parent, gain);
+        const double memory = MEMORY * sketch->scale.radius;
+        size_t reached = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            gain[i] = 0;
+            usual[i] = lower;
+            if (isfinite(distance[i])) order[reached++] = (ranked){distance[i], i};
+        }
+        qsort(order, reached, sizeof *order, by_distance);
+        uint32_t best = *top;
+        for (size_t k = 0; k < reached; k++) { /* parents come before their children */
+            const uint32_t i = order[k].point;
+            if (parent[i] == UINT32_MAX) continue;
+            const double length = plm_graph_length(&sketch->graph, i, parent[i]), radius = sketch->point[i].radius;
+            const double before = usual[parent[i]], share = fmin(length / memory, 1);
+            const bool is_stout = sketch->is_tube[i] && radius >= THIN_WAY * before;
+            const double slimmer = fmax(before + share * (fmin(radius, before) - before), TAPER * lower);
+            gain[i] = gain[parent[i]] + (float)(length * (is_stout ? 1 : -THIN_LOSS));
+            usual[i] = (float)(is_stout ? slimmer : before);
+        }
+        for (uint32_t i = 0; i < count; i++)
+            if (isfinite(distance[i]) && gain[i] > gain[best]) best = i;
+        *top = best;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
@@ -231,16 +297,23 @@ static plm_status measure_radius(const plm_sketch *sketch, plm_stem_path *stem, 
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-/* Cuts the path where the radius has fallen below THIN_END of the lower stem's. */
-static plm_status cut_thin_end(plm_stem_path *stem, plm_error *error)
+/* Cuts the path where the radius has fallen below THIN_END of the lower stem's for good: at the end of the piece over
+ * which the excess over that adds up to the most. The noise adds to the squares of both. */
+static plm_status cut_thin_end(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error)
 {
     float *value = plm_alloc(stem->count, sizeof *value, error);
     if (!value) return PLM_E_MEMORY;
+    const double noise = sketch->scale.noise * sketch->scale.noise;
     const size_t lower = (size_t)(LOWER_SHARE * (double)stem->count);
     for (size_t n = 0; n < lower; n++) value[n] = (float)stem->radius[n];
-    const double least = THIN_END * plm_quantile(value, lower, 0.5);
+    const double typical = plm_quantile(value, lower, 0.5);
+    const double least = THIN_END * sqrt(fmax(typical * typical - noise, 0.25 * typical * typical));
     size_t end = lower;
-    while (end < stem->count && stem->radius[end] >= least) end++;
+    double sum = 0, most = 0;
+    for (size_t n = lower; n < stem->count; n++) {
+        sum += sqrt(fmax(stem->radius[n] * stem->radius[n] - noise, 0)) - least;
+        if (sum > most) most = sum, end = n + 1;
+    }
     stem->count = end;
     plm_free(value);
     return PLM_OK;
@@ -288,7 +361,9 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     status = tube_walk(sketch, base, distance, parent, error);
     if (status != PLM_OK) goto done;
     for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(distance[i]);
-    const uint32_t top = extreme_point(sketch, candidate, true);
+    uint32_t top = extreme_point(sketch, candidate, true);
+    status = thickest_way(sketch, distance, parent, &top, error);
+    if (status != PLM_OK) goto done;
     if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) goto done;
     size_t length = 0;
     for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) chain[length++] = i;
@@ -299,7 +374,7 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     }
     status = resample(sketch, chain, length, &stem, error);
     if (status == PLM_OK) status = refine(sketch, &stem, error);
-    if (status == PLM_OK) status = cut_thin_end(&stem, error);
+    if (status == PLM_OK) status = cut_thin_end(sketch, &stem, error);
     if (status == PLM_OK) status = plm_stem_fit(sketch, &stem, error);
     if (status != PLM_OK) goto done;
     sketch->stem = stem;

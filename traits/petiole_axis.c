@@ -19,6 +19,11 @@ static const double radii_per_span = 60;
 static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
 static const double noise_along = 0.7;       /* share of the noise that lies along the tube */
 static const double least_ring = 0.45;       /* share of a ring that must be outside of the stem */
+/* Where the labels are our own: what they leave open of the junction along the petiole and of the foot across it, in radii
+ * and in SDs of the noise, and of the direction (medians over simulated plants). */
+static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.6;
+static const double own_direction = 0.25 * PLM_PI / 180;
+static const double node_turn = 0.4 * PLM_PI / 180; /* of the stem at its nodes, within less than a span of its line */
 static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */
 
 typedef struct petiole {
@@ -30,6 +35,7 @@ typedef struct petiole {
     plm_centre_line line;
     plm_tube tube;
     bool has_tube;
+    bool own; /* labels are the segmentation's, not given */
     double radius, noise;
     double start; /* parameter of line before which points are left out */
 } petiole;
@@ -338,7 +344,7 @@ static void finish_node(const petiole *p, double base_error, plm_axis *axis)
     axis->node = fabs(plm_curve_length(&stem->line, stem->begin, foot));
     axis->node_error = base_error;
     axis->insertion = atan2(plm_norm(cross), plm_dot(tangent, axis->direction));
-    axis->insertion_error = hypot(axis->direction_error, stem->direction_error + 0.5 * model_error);
+    axis->insertion_error = hypot(axis->direction_error, hypot(stem->direction_error, node_turn));
 }
 
 static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
@@ -348,7 +354,9 @@ static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
     const size_t count = positions(p, line, position);
     if (count < FEWEST_POINTS)
         return plm_fail(error, PLM_E_DEGENERATE, "only %zu of %zu points lie along one line", count, p->points.count);
-    const plm_end far = plm_blurred_end(position, count, noise_along * p->noise);
+    plm_end far = plm_blurred_end(position, count, noise_along * p->noise);
+    if (p->own)
+        far.std_error = hypot(far.std_error, hypot(own_junction_radii * p->radius, own_junction_noise * p->noise));
     for (size_t i = 0; i < count; i++) position[i] = -position[i];
     plm_end first = plm_blurred_end(position, count, noise_along * p->noise);
     first.position = -first.position;
@@ -373,6 +381,11 @@ static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
     const double shift_error =
         end_error(line, axis->begin, axis->end, base.std_error, hypot(far.std_error, 0.3 * p->radius));
     axis->direction_error = sqrt(1.44 * fit_error * fit_error + shift_error * shift_error + model_error * model_error);
+    if (p->own) {
+        const double across = hypot(own_foot_radii * p->radius, own_foot_noise * p->noise) / axis->length;
+        axis->direction_error =
+            sqrt(axis->direction_error * axis->direction_error + across * across + own_direction * own_direction);
+    }
     if (p->has_tube) plm_tube_radius(&p->tube, 0, &axis->radius_error);
     finish_node(p, base.std_error, axis);
     return PLM_OK;
@@ -397,7 +410,9 @@ plm_status plm_petiole_axis_fit(const plm_scene *scene, const plm_organ *organ, 
     if (organ->count < FEWEST_POINTS)
         return plm_fail(error, PLM_E_DEGENERATE, "the petiole has %zu points; %d are needed", organ->count,
                         FEWEST_POINTS);
-    petiole p = {.organ = organ, .leaf = plm_scene_organ(scene, PLM_LABEL_LEAF, organ->id)};
+    petiole p = {.organ = organ,
+                 .leaf = plm_scene_organ(scene, PLM_LABEL_LEAF, organ->id),
+                 .own = scene->habit != PLM_HABIT_UNKNOWN};
     plm_status status = plm_tube_points_gather(organ, MOST_POINTS, &p.points, error);
     if (status != PLM_OK) return status;
     p.distance = plm_alloc(2 * p.points.count, sizeof *p.distance, error);

@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+static const double round_error = 0.01; /* of a petiole's diameter: it is no perfect circle */
+
 static plm_status without_axis(const plm_organ *organ, plm_estimate *out)
 {
     return plm_trait_failed(out, "no axis was found: %s", organ->axis_reason);
@@ -71,7 +73,11 @@ plm_status plm_trait_petiole_diameter(const plm_scene *scene, const plm_organ *o
     if (!axis) return without_axis(organ, out);
     const double length = length_to_blade(scene, organ);
     const double reach = fmin(0.4 * length, 12 * axis->radius);
-    return plm_tube_diameter(scene, organ, plm_curve_walk(&axis->line, axis->begin, 0.5 * length), reach, out, error);
+    const plm_status status =
+        plm_tube_diameter(scene, organ, plm_curve_walk(&axis->line, axis->begin, 0.5 * length), reach, out, error);
+    if (status == PLM_OK && out->state == PLM_STATE_OK)
+        out->std_error = hypot(out->std_error, round_error * out->value);
+    return status;
 }
 
 /* Of a leaf: the angle of its petiole's chord against the stem's axis at the node. */

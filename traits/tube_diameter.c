@@ -18,6 +18,9 @@ static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflat
 static const double thick_noise = 0.3, very_thick_noise = 0.45;
 static const double model_error = 0.0015;   /* facets, roundness: share of the diameter */
 static const double fit_error_factor = 1.3; /* residuals of neighbouring points are alike */
+/* A petiole whose points scatter by more than this share of the fitted diameter, or that is stouter than the tube along
+ * the whole petiole, was not resolved: the fit follows the edge of a blade or a ghost. */
+static const double hidden = 0.3, stouter = 1.4;
 static const double unresolved = 4; /* diameter over spread below which the ring is no longer resolved: a thin rod and a
                                                short arc of a thick one look alike then */
 static const double unresolved_error =
@@ -96,6 +99,12 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
                                 "the points around the place of measurement leave the radius undetermined "
                                 "(seen from %.0f %% of the directions)",
                                 100 * tube.coverage);
+    if (organ->label == PLM_LABEL_PETIOLE && (tube.spread > hidden * fit || fit > 2 * stouter * organ->axis->radius))
+        return plm_trait_failed(
+            out,
+            "the points scatter by %.2f mm about a tube of %.2f mm (%.2f mm along the petiole): its "
+            "ring is not resolved; a scan with less noise is needed",
+            1e3 * tube.spread, 1e3 * fit, 2e3 * organ->axis->radius);
     plm_tube_deflate(fit, 2 * fit_error, tube.spread, scene->sampling.fused, &out->value, &out->std_error);
     if (out->value < unresolved * tube.spread) {
         out->flags |= PLM_FLAG_LOW_DENSITY;

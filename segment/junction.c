@@ -1,0 +1,401 @@
+/* segment/junction.c: the blade junction by the widths of a leaf's level sets. The distance along the graph from the foot
+ * grows along the petiole and then spreads over the blade, so its level sets are rings as wide as the petiole before the
+ * junction and arcs that widen after it (the Reeb graph of that distance: Y. Shinagawa and T. L. Kunii, Constructing a
+ * Reeb graph automatically from cross sections, 1991). Classes by balls blur the junction by a ball's radius; a change of
+ * the width is told to about a step. */
+#include "segment/junction.h"
+
+#include "cloud/linear.h"
+#include "segment/scratch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double WINDOW = 3;                         /* in steps of a working cell */
+static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
+static const double WIDE = 1.6;    /* widths of the tube: a station beyond is blade, one below is tube */
+static const double BLADE = 3;     /* widths of the tube that the last leaflet reaches at least */
+static const double NEAR = 3.2;    /* points within so many widths of a tube station's middle are of the tube */
+static const double FOOT_LINE = 2; /* length of the petiole that gives its line at the foot, in R */
+static const double FOOT = 0.35;   /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1; /* of a step, in the search for the change */
+enum { BEFORE = 6, AFTER = 9, FEWEST_STATIONS = 6, STATIONS_MOST = 5000 };
+
+typedef struct work {
+    plm_sketch *sketch;
+    const plm_side_groups *groups;
+    plm_scratch scratch;
+    plm_leaf_way way;
+    bool *allowed;
+    uint32_t *source, *parent, *mark;
+    float *start, *value;
+    uint32_t stamp;
+} work;
+
+/* ---- The way from the foot ------------------------------------------------------------------------------------- */
+
+typedef struct ranked {
+    float distance;
+    uint32_t point;
+} ranked;
+
+static int by_distance(const void *a, const void *b)
+{
+    const ranked *p = a, *q = b;
+    if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
+    return (p->point > q->point) - (p->point < q->point);
+}
+
+/* Distances within a leaf from its foot, and its points in their order. No points where the leaf has no foot. */
+static plm_status walk_leaf(work *w, int32_t leaf, plm_error *error)
+{
+    const plm_sketch *s = w->sketch;
+    const size_t count = s->working.count;
+    float nearest = INFINITY;
+    w->way.count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        w->allowed[i] = s->leaf[i] == leaf && !s->is_stem[i];
+        if (w->allowed[i] && w->groups->distance[i] < nearest) nearest = w->groups->distance[i];
+    }
+    if (!isfinite(nearest) || nearest > s->scale.radius) return PLM_OK;
+    size_t sources = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (w->allowed[i] && w->groups->distance[i] <= nearest + 1.5 * s->working.cell) {
+            w->start[sources] = w->groups->distance[i];
+            w->source[sources++] = i;
+        }
+    const plm_walk walk = {.source = w->source,
+                           .source_count = sources,
+                           .start = w->start,
+                           .allowed = w->allowed,
+                           .distance = w->way.distance,
+                           .parent = w->parent};
+    const plm_status status = plm_graph_walk(&s->graph, &walk, error);
+    if (status != PLM_OK) return status;
+    ranked *rank = plm_alloc(count, sizeof *rank, error);
+    if (!rank) return PLM_E_MEMORY;
+    size_t reached = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (w->allowed[i] && isfinite(w->way.distance[i])) rank[reached++] = (ranked){w->way.distance[i], i};
+    qsort(rank, reached, sizeof *rank, by_distance);
+    for (size_t k = 0; k < reached; k++) w->way.order[k] = rank[k].point;
+    plm_free(rank);
+    w->way.count = reached;
+    return PLM_OK;
+}
+
+/* Marks the points at distances in [low, high) that are joined, among them, with the way from tip to foot. */
+static void flood(work *w, double low, double high, const uint32_t *trail, size_t trail_count)
+{
+    const plm_graph *graph = &w->sketch->graph;
+    const float *distance = w->way.distance;
+    const uint32_t stamp = ++w->stamp;
+    size_t stack = 0;
+    for (size_t k = 0; k < trail_count; k++) {
+        const uint32_t i = trail[k];
+        if (distance[i] >= low && distance[i] < high && w->mark[i] != stamp) w->mark[i] = stamp, w->source[stack++] = i;
+    }
+    while (stack) {
+        const uint32_t i = w->source[--stack];
+        for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++) {
+            const uint32_t j = graph->edge[e];
+            if (!w->allowed[j] || w->mark[j] == stamp || !(distance[j] >= low && distance[j] < high)) continue;
+            w->mark[j] = stamp;
+            w->source[stack++] = j;
+        }
+    }
+}
+
+/* Mean and width of the marked points of order[begin, end). */
+static void measure_station(const work *w, size_t begin, size_t end, plm_station *station)
+{
+    const plm_sketch *s = w->sketch;
+    double moment[6] = {0}, value[3], vector[3][3], sum[3] = {0}, tubes = 0;
+    *station = (plm_station){0};
+    for (size_t k = begin; k < end; k++) {
+        const uint32_t i = w->way.order[k];
+        if (w->mark[i] != w->stamp) continue;
+        for (int a = 0; a < 3; a++) sum[a] += s->working.xyz[i][a];
+        tubes += s->is_tube[i];
+        station->count++;
+    }
+    if (!station->count) return;
+    for (int a = 0; a < 3; a++) station->middle[a] = sum[a] / station->count;
+    station->tube = tubes / station->count;
+    for (size_t k = begin; k < end; k++) {
+        const uint32_t i = w->way.order[k];
+        if (w->mark[i] != w->stamp) continue;
+        double d[3];
+        for (int a = 0; a < 3; a++) d[a] = s->working.xyz[i][a] - station->middle[a];
+        for (int a = 0, m = 0; a < 3; a++)
+            for (int c = a; c < 3; c++) moment[m++] += d[a] * d[c] / station->count;
+    }
+    plm_eigen3(moment, value, vector);
+    station->width = sqrt(fmax(value[0], 0));
+}
+
+/* A station takes in what is joined, within a wider range of distances, with the way to the leaf's farthest point:
+ * leaflets to the sides, and what lies about the foot, are not. The range is wide enough for gaps between points, and for
+ * compound leaves narrow enough for their leaflets. */
+static void measure_stations(work *w)
+{
+    plm_leaf_way *way = &w->way;
+    const double margin = (w->sketch->habit == PLM_HABIT_COMPOUND ? JOINED_COMPOUND : JOINED) * way->window;
+    size_t trail_count = 0, begin = 0, end = 0;
+    uint32_t *trail = (uint32_t *)w->value;
+    for (uint32_t i = way->order[way->count - 1]; i != UINT32_MAX; i = w->parent[i]) trail[trail_count++] = i;
+    for (size_t k = 0; k < way->station_count; k++) {
+        const double low = (double)k * way->step - 0.5 * way->window, high = low + way->window;
+        while (begin < way->count && way->distance[way->order[begin]] < low) begin++;
+        if (end < begin) end = begin;
+        while (end < way->count && way->distance[way->order[end]] < high) end++;
+        flood(w, low - margin, high + margin, trail, trail_count);
+        measure_station(w, begin, end, &way->station[k]);
+    }
+}
+
+/* ---- The change of the width ----------------------------------------------------------------------------------- */
+
+/* Typical width of the tube: of the stations whose points are mostly called tube; 0 where there are none. */
+static double tube_width(const work *w, size_t first)
+{
+    size_t count = 0;
+    for (size_t k = first; k < w->way.station_count; k++) {
+        const plm_station *station = &w->way.station[k];
+        if (station->count > 1 && station->tube > 0.5) w->value[count++] = (float)station->width;
+    }
+    return count ? plm_quantile(w->value, count, 0.4) : 0;
+}
+
+/* The first station of the blade of a simple leaf: the split at which the fewest stations before it are wide and the
+ * fewest from it on, up to the widest, are narrow. */
+static size_t only_split(const plm_leaf_way *way, size_t first)
+{
+    const double limit = WIDE * way->tube;
+    size_t widest = first, best = first;
+    for (size_t k = first; k < way->station_count; k++)
+        if (way->station[k].width > way->station[widest].width) widest = k;
+    long balance = 0, least = 0;
+    for (size_t k = first; k < widest; k++) { /* moving the split beyond station k */
+        balance += way->station[k].width > limit ? 1 : -1;
+        if (balance < least) {
+            least = balance;
+            best = k + 1;
+        }
+    }
+    return best;
+}
+
+/* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first
+ * stretch as long as a window that is narrow. */
+static size_t last_split(const plm_leaf_way *way, size_t first)
+{
+    const double limit = WIDE * way->tube;
+    size_t k = way->station_count, narrow = 0;
+    while (k > first && way->station[k - 1].width < BLADE * way->tube) k--;
+    for (; k > first && narrow < (size_t)WINDOW; k--) narrow = way->station[k - 1].width > limit ? 0 : narrow + 1;
+    return k > first ? k + narrow : first;
+}
+
+/* Least squares of excess = c covered + a beyond over stations; c and a are not negative. Gives the sum of squares. */
+static double fit_growth(const plm_leaf_way *way, double d, size_t low, size_t high)
+{
+    double m[3] = {0}, r[2] = {0}, squares = 0, c = 0, a = 0;
+    const double window = way->window / way->step;
+    for (int turn = 0; turn < 2; turn++) {
+        for (size_t k = low; k < high; k++) {
+            const double end = (double)k + 0.5 * window;
+            const double covered = fmin(fmax(end - d, 0), window) / window; /* share of the window beyond d */
+            const double beyond = covered * fmax(end - d - 0.5 * covered * window, 0);
+            const double width = way->station[k].width;
+            const double excess = width > way->tube ? sqrt(width * width - way->tube * way->tube) : 0;
+            const double residual = excess - c * covered - a * beyond;
+            squares += turn ? residual * residual : 0;
+            if (turn) continue;
+            m[0] += covered * covered, m[1] += covered * beyond, m[2] += beyond * beyond;
+            r[0] += covered * excess, r[1] += beyond * excess;
+        }
+        if (turn) break;
+        const double det = m[0] * m[2] - m[1] * m[1];
+        if (det > 1e-9 * m[0] * m[2]) c = (m[2] * r[0] - m[1] * r[1]) / det, a = (m[0] * r[1] - m[1] * r[0]) / det;
+        if (c < 0) c = 0, a = m[2] > 0 ? r[1] / m[2] : 0;
+        if (a < 0) a = 0, c = m[0] > 0 ? r[0] / m[0] : 0;
+    }
+    return squares;
+}
+
+/* Distance at which the width begins to grow: that from which a step and a slope fit the widths around the split best. */
+static double change(const plm_leaf_way *way, size_t first, size_t split)
+{
+    const size_t low = split > first + BEFORE ? split - BEFORE : first;
+    size_t high = split + AFTER < way->station_count ? split + AFTER : way->station_count;
+    double best = INFINITY, at = (double)split;
+    for (double d = (double)split - 4; d <= (double)split + 3; d += SUBSTEP) {
+        if (d < (double)low) continue;
+        const double squares = fit_growth(way, d, low, high);
+        if (squares < best) best = squares, at = d;
+    }
+    return at * way->step;
+}
+
+/* ---- Labels ----------------------------------------------------------------------------------------------------- */
+
+static double gap_squared(const float a[3], const double b[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum;
+}
+
+/* The station nearest to a distance that has points, before the junction. */
+static const plm_station *station_at(const plm_leaf_way *way, double distance)
+{
+    size_t k = (size_t)(distance / way->step + 0.5);
+    if (k >= way->station_count) k = way->station_count - 1;
+    while (k > 0 && !way->station[k].count) k--;
+    return &way->station[k];
+}
+
+/* The petiole's line at its foot, from the first stations that are as narrow as a tube: what lies before them, where the
+ * stem's remains lie as near, is the petiole's only along this line. begin: distance at which the line begins. false where
+ * there are too few. */
+static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3], double *begin)
+{
+    const size_t end = (size_t)(way->junction / way->step),
+                 wanted = (size_t)(FOOT_LINE * way->sketch->scale.radius / way->step);
+    double sum[3] = {0}, product[3] = {0}, at = 0, square = 0, n = 0;
+    size_t narrow = 0, k = 0;
+    for (; k < end && narrow < (size_t)WINDOW; k++)
+        narrow = way->station[k].count > 1 && way->station[k].width < WIDE * way->tube ? narrow + 1 : 0;
+    if (narrow < (size_t)WINDOW) return false;
+    const size_t first = k - narrow;
+    *begin = (double)first * way->step;
+    for (k = first; k < end && k < first + wanted; k++) {
+        if (!way->station[k].count || way->station[k].width > WIDE * way->tube) continue;
+        const double t = (double)k * way->step - *begin;
+        n++, at += t, square += t * t;
+        for (int a = 0; a < 3; a++) sum[a] += way->station[k].middle[a], product[a] += t * way->station[k].middle[a];
+    }
+    const double spread = square - at * at / n;
+    if (n < 4 || !(spread > 0)) return false;
+    for (int a = 0; a < 3; a++) {
+        along[a] = (product[a] - at * sum[a] / n) / spread;
+        origin[a] = (sum[a] - at * along[a]) / n;
+    }
+    return plm_normalise(along) > 0;
+}
+
+/* Points before the first clear station that are off the petiole's line are the stem's. */
+static void clean_foot(work *w)
+{
+    const plm_leaf_way *way = &w->way;
+    plm_sketch *s = w->sketch;
+    double origin[3], along[3], begin;
+    if (!s->stem.count || !foot_line(way, origin, along, &begin)) return;
+    const double reach = NEAR * way->tube;
+    for (size_t k = 0; k < way->count && way->distance[way->order[k]] < begin; k++) {
+        const uint32_t i = way->order[k];
+        double d[3];
+        for (int a = 0; a < 3; a++) d[a] = s->working.xyz[i][a] - origin[a];
+        const double forward = plm_dot(d, along);
+        if (plm_dot(d, d) - forward * forward < reach * reach) {
+            s->is_tube[i] = true;
+        } else if (s->is_tube[i]) {
+            s->leaf[i] = -1; /* tube without leaf: stem */
+        }
+    }
+}
+
+static void relabel_simple(work *w, double beyond, const double origin[3], const double along[3])
+{
+    const plm_leaf_way *way = &w->way;
+    const double reach = NEAR * way->tube, slender = 2 * way->tube;
+    for (size_t k = 0; k < way->count; k++) {
+        const uint32_t i = way->order[k];
+        const float *p = w->sketch->working.xyz[i];
+        if (way->distance[i] < way->junction) {
+            const plm_station *station = station_at(way, way->distance[i]);
+            if (station->width < WIDE * way->tube)
+                w->sketch->is_tube[i] = gap_squared(p, station->middle) < reach * reach;
+            continue;
+        }
+        double d[3];
+        for (int a = 0; a < 3; a++) d[a] = p[a] - origin[a];
+        const double forward = plm_dot(d, along);
+        w->sketch->is_tube[i] =
+            forward >= -slender && forward < beyond && plm_dot(d, d) - forward * forward < slender * slender;
+    }
+}
+
+static void relabel_compound(work *w)
+{
+    plm_sketch *s = w->sketch;
+    const plm_leaf_way *way = &w->way;
+    const double reach = NEAR * way->tube;
+    const uint32_t tip = way->order[way->count - 1];
+    for (size_t k = 0; k < way->count; k++) {
+        const uint32_t i = way->order[k];
+        const plm_station *station = station_at(way, way->distance[i]);
+        if (way->distance[i] >= way->junction) {
+            if (!s->is_tube[i] || gap_squared(s->working.xyz[i], station->middle) > 4 * station->width * station->width)
+                continue;
+            s->is_tube[i] = false;
+            s->leaflet[i] = s->leaflet[tip];
+        } else if (station->width < WIDE * way->tube &&
+                   gap_squared(s->working.xyz[i], station->middle) < reach * reach) {
+            s->is_tube[i] = true;
+        }
+    }
+}
+
+static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
+{
+    plm_leaf_way *way = &w->way;
+    const plm_sketch *s = w->sketch;
+    const plm_status status = walk_leaf(w, leaf, error);
+    if (status != PLM_OK || !way->count) return status;
+    const double farthest = way->distance[way->order[way->count - 1]];
+    way->step = fmax(s->working.cell, farthest / (STATIONS_MOST - 2));
+    way->window = WINDOW * way->step;
+    way->station_count = (size_t)(farthest / way->step) + 1;
+    const size_t first = (size_t)(FOOT * s->scale.radius / way->step) + 1;
+    if (way->station_count < first + FEWEST_STATIONS) return PLM_OK;
+    measure_stations(w);
+    way->tube = tube_width(w, first);
+    if (!(way->tube > 0)) return PLM_OK;
+    const bool compound = s->habit == PLM_HABIT_COMPOUND;
+    const size_t split = compound ? last_split(way, first) : only_split(way, first);
+    if (split <= first || split >= way->station_count) return PLM_OK;
+    way->junction = change(way, first, split);
+    double origin[3] = {0}, along[3] = {0};
+    if (compound)
+        relabel_compound(w);
+    else
+        relabel_simple(w, plm_leaf_sinus(way, origin, along, w->value), origin, along);
+    clean_foot(w);
+    return PLM_OK;
+}
+
+plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    const bool has_petioles =
+        sketch->habit == PLM_HABIT_SIMPLE || sketch->habit == PLM_HABIT_COMPOUND || sketch->habit == PLM_HABIT_ROSETTE;
+    if (!has_petioles || !sketch->scale.has_tubes) return PLM_OK;
+    work w = {.sketch = sketch, .groups = groups, .scratch = {.error = error}, .way = {.sketch = sketch}};
+    w.allowed = plm_scratch_take(&w.scratch, count, sizeof *w.allowed);
+    w.source = plm_scratch_take(&w.scratch, count, sizeof *w.source);
+    w.parent = plm_scratch_take(&w.scratch, count, sizeof *w.parent);
+    w.mark = plm_scratch_take(&w.scratch, count, sizeof *w.mark);
+    w.start = plm_scratch_take(&w.scratch, count, sizeof *w.start);
+    w.value = plm_scratch_take(&w.scratch, 4 * count + STATIONS_MOST, sizeof *w.value);
+    w.way.order = plm_scratch_take(&w.scratch, count, sizeof *w.way.order);
+    w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
+    w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
+    plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)
+        status = set_leaf(&w, (int32_t)leaf, error);
+    plm_scratch_free(&w.scratch, NULL);
+    return status;
+}

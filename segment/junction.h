@@ -1,0 +1,43 @@
+/* segment/junction.h: where a leaf's petiole ends and its blade begins. Internal. */
+#ifndef PLANTIMETER_SEGMENT_JUNCTION_H
+#define PLANTIMETER_SEGMENT_JUNCTION_H
+
+#include "segment/side_groups.h"
+
+/** Sets is_tube of the points of leaves right by the place of the blade junction: of each leaf that stands on a petiole,
+ * the level sets of the distance along the graph from its foot are as narrow as a tube up to the junction, and widen from
+ * there. Simple leaves: all before the (only) junction is petiole, all beyond it is blade. Compound leaves: the way to
+ * the last leaflet's junction is rachis, all beyond is blade; other leaflets keep what the points said. Leaves whose
+ * level sets tell no junction stay as they are. */
+plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error);
+
+/* ---- Shared by its files --------------------------------------------------------------------------------------- */
+
+/** What of a leaf lies at about one distance from its foot. */
+typedef struct plm_station {
+    double width;     /**< SD along the largest extent */
+    double middle[3]; /**< mean */
+    double tube;      /**< share of points called tube */
+    uint32_t count;
+} plm_station;
+
+/** One leaf, from its foot on. Station k takes in the points at distances within half a window of k steps. */
+typedef struct plm_leaf_way {
+    const plm_sketch *sketch;
+    size_t count;
+    uint32_t *order; /**< the leaf's points by distance */
+    float *distance; /**< of all working points from the foot, along the graph within the leaf */
+    size_t station_count;
+    plm_station *station;
+    double step, window;
+    double tube;     /**< typical width of the tube's stations */
+    double junction; /**< distance at which the width begins to grow */
+} plm_leaf_way;
+
+/** Lobes that reach back to both sides of the petiole leave a sinus between them that narrows towards the junction; near
+ * it the level sets jump over. Where the leaf has one, fits the sinus' edges and gives how far beyond way->junction they
+ * meet the petiole, its line there (a point at way->junction and a unit direction); else 0. scratch: 4 floats a point of
+ * the leaf. */
+double plm_leaf_sinus(const plm_leaf_way *way, double origin[3], double along[3], float *scratch);
+
+#endif
