@@ -3,6 +3,7 @@
 #include "segment/junction.h"
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
+#include "segment/strap_leaves.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +19,14 @@ static double strap_evidence(const plm_sketch *sketch, const plm_side_group *gro
     return 0.5 * (group->tube_share < STRAP_TUBE) + 0.5 * (ratio > STRAP_RADIUS || ratio == 0);
 }
 
+/* Most points are tube, and larger balls would find more: folded straps, seen as tubes. */
+static bool leaves_are_tubes(const plm_sketch *sketch)
+{
+    size_t tubes = 0;
+    for (size_t i = 0; i < sketch->working.count; i++) tubes += sketch->is_tube[i];
+    return sketch->stem.count && sketch->scale.rises && 2 * tubes > sketch->working.count;
+}
+
 static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *groups)
 {
     size_t leafy = 0, compound = 0;
@@ -31,6 +40,7 @@ static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *gr
         area += group->blade_area;
         strap += group->blade_area * strap_evidence(sketch, group);
     }
+    if (leaves_are_tubes(sketch)) return PLM_HABIT_STRAP;
     if (!leafy) return sketch->scale.has_tubes ? PLM_HABIT_BARE_STEM : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->scale.has_tubes) return leafy > 1 ? PLM_HABIT_HEAD : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->stem.count) return PLM_HABIT_ROSETTE;
@@ -52,8 +62,8 @@ static int by_place(const void *a, const void *b)
     return (p->leaf > q->leaf) - (p->leaf < q->leaf);
 }
 
-/* Numbers the leaves from the base up: by foot along the stem, those without a foot after them by height. */
-static plm_status number_leaves(plm_sketch *sketch, const plm_side_groups *groups, size_t leaves, plm_error *error)
+/* Numbers the leaves from the base up: by foot along the stem, those without a foot (INFINITY) after them by height. */
+static plm_status number_leaves(plm_sketch *sketch, const double *along, size_t leaves, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
     double(*mean)[4] = plm_scratch_take(&scratch, leaves + 1, sizeof *mean);
@@ -64,12 +74,11 @@ static plm_status number_leaves(plm_sketch *sketch, const plm_side_groups *group
             if (sketch->leaf[i] < 0) continue;
             double *m = mean[sketch->leaf[i]];
             for (int axis = 0; axis < 3; axis++) m[axis] += sketch->working.xyz[i][axis];
-            if (m[3]++ == 0) order[sketch->leaf[i]].along = groups->group[sketch->group[i]].along;
+            m[3]++;
         }
         for (size_t k = 0; k < leaves; k++) {
-            const double along =
-                isfinite(order[k].along) ? order[k].along : 1e3 * sketch->scale.size + mean[k][2] / mean[k][3];
-            order[k] = (place){along, atan2(mean[k][1], mean[k][0]), (int32_t)k};
+            const double foot = isfinite(along[k]) ? along[k] : 1e3 * sketch->scale.size + mean[k][2] / mean[k][3];
+            order[k] = (place){foot, atan2(mean[k][1], mean[k][0]), (int32_t)k};
         }
         qsort(order, leaves, sizeof *order, by_place);
         for (size_t k = 0; k < leaves; k++) number[order[k].leaf] = (int32_t)k;
@@ -98,14 +107,32 @@ static plm_status number_leaflets(plm_sketch *sketch, const plm_side_groups *gro
 /* One leaf a group that has a blade. */
 static plm_status leaves_of_groups(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)
 {
-    int32_t *leaf_of = plm_alloc(groups->count + 1, sizeof *leaf_of, error);
-    if (!leaf_of) return PLM_E_MEMORY;
+    plm_scratch scratch = {.error = error};
+    int32_t *leaf_of = plm_scratch_take(&scratch, groups->count + 1, sizeof *leaf_of);
+    double *along = plm_scratch_take(&scratch, groups->count + 1, sizeof *along);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
+        size_t leaves = 0;
+        for (size_t g = 0; g < groups->count; g++) {
+            leaf_of[g] = groups->group[g].blades ? (int32_t)leaves : -1;
+            if (groups->group[g].blades) along[leaves++] = groups->group[g].along;
+        }
+        for (size_t i = 0; i < sketch->working.count; i++)
+            sketch->leaf[i] = sketch->group[i] >= 0 && !sketch->is_stem[i] ? leaf_of[sketch->group[i]] : -1;
+        status = number_leaves(sketch, along, leaves, error);
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
+
+static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
+{
+    double *along = NULL;
     size_t leaves = 0;
-    for (size_t g = 0; g < groups->count; g++) leaf_of[g] = groups->group[g].blades ? (int32_t)leaves++ : -1;
-    for (size_t i = 0; i < sketch->working.count; i++)
-        sketch->leaf[i] = sketch->group[i] >= 0 && !sketch->is_stem[i] ? leaf_of[sketch->group[i]] : -1;
-    plm_free(leaf_of);
-    return number_leaves(sketch, groups, leaves, error);
+    plm_status status = plm_strap_leaves(sketch, &along, &leaves, error);
+    if (status == PLM_OK) status = number_leaves(sketch, along, leaves, error);
+    plm_free(along);
+    return status;
 }
 
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error)
@@ -114,7 +141,10 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
     plm_status status = plm_side_groups_find(sketch, &groups, error);
     if (status == PLM_OK) {
         sketch->habit = habit != PLM_HABIT_UNKNOWN ? habit : guess_habit(sketch, &groups);
-        status = leaves_of_groups(sketch, &groups, error);
+        if (sketch->habit == PLM_HABIT_STRAP && sketch->stem.count)
+            status = leaves_without_petioles(sketch, error);
+        else
+            status = leaves_of_groups(sketch, &groups, error);
     }
     if (status == PLM_OK && sketch->habit == PLM_HABIT_COMPOUND) status = number_leaflets(sketch, &groups, error);
     if (status == PLM_OK) status = plm_sketch_junctions(sketch, &groups, error);

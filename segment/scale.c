@@ -1,5 +1,6 @@
 /* segment/scale.c: below three radii tubes look flat, above five or six their neighbours spoil them: the length of what
- * looks like a tube, over the radius R of the balls that it is judged in, peaks between. */
+ * looks like a tube, over the radius R of the balls that it is judged in, peaks between. A folded strap looks like a tube
+ * too, in balls of its width; but points on a tube all lie a radius off its middle, those of a strap do not. */
 #include "segment/scale.h"
 
 #include "cloud/linear.h"
@@ -18,7 +19,8 @@ static const double TUBE_ROUNDNESS = 0.6;  /* above: round, not flat */
 static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the peak: folded straps peak later */
 static const double NOISE_RADII = 10;      /* R in sigmas, at least: a noisier ball is round whatever it holds */
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
-static const double TUBE_LEAST = 0.15;     /* tubes shorter than this share of the size are none */
+static const double TUBE_LEAST = 0.17;     /* tubes shorter than this share of the size are none */
+static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
 
 static int compare_floats(const void *a, const void *b)
@@ -72,7 +74,8 @@ static plm_status thinned_spacing(const float (*xyz)[3], size_t count, double *s
 /* What one R of the series shows. */
 typedef struct trial {
     double radius, tube_length, stem_radius;
-    double flat_noise; /* from the points that deviate least from their sheets */
+    double ring_length; /* of those tube points that lie where the surface of a tube is: straps fill all distances */
+    double flat_noise;  /* from the points that deviate least from their sheets */
 } trial;
 
 static plm_status try_radius(const float (*xyz)[3], size_t count, double radius, trial *result, plm_error *error)
@@ -91,7 +94,7 @@ static plm_status try_radius(const float (*xyz)[3], size_t count, double radius,
         status = shape && value ? plm_ball_shapes(&graph, radius, shape, error) : PLM_E_MEMORY;
     }
     if (status == PLM_OK) {
-        double length = 0;
+        double length = 0, ring = 0;
         size_t tubes = 0;
         for (size_t i = 0; i < thinned.count; i++) value[i] = shape[i].value[2];
         const double noise = sqrt(plm_quantile(value, thinned.count, 0.2));
@@ -100,10 +103,12 @@ static plm_status try_radius(const float (*xyz)[3], size_t count, double radius,
             if (!(l[1] > 0) || 1 - sqrt(l[1] / l[0]) <= TUBE_LINEARITY || sqrt(l[2] / l[1]) <= TUBE_ROUNDNESS) continue;
             const double tube_radius = sqrt((double)l[1] + l[2]); /* a ring has variance r^2 / 2 in each direction */
             if (tube_radius < TUBE_THICKNESS * radius) continue;
-            length += cell * cell / (2 * PLM_PI * tube_radius);
+            const double own = cell * cell / (2 * PLM_PI * tube_radius), off = shape[i].offset / tube_radius;
+            length += own;
+            if (off > RING_LOW && off < RING_HIGH) ring += own;
             value[tubes++] = (float)tube_radius;
         }
-        *result = (trial){radius, length, plm_quantile(value, tubes, 0.75), noise};
+        *result = (trial){radius, length, plm_quantile(value, tubes, 0.75), ring, noise};
     }
     plm_free(value);
     plm_free(shape);
@@ -127,10 +132,13 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     for (; radius <= last && trials < SERIES_MAXIMUM && status == PLM_OK; radius *= SERIES_RATIO)
         status = try_radius(xyz, count, radius, &series[trials++], error);
     if (status != PLM_OK) return status;
-    double peak = 0;
-    for (int i = 0; i < trials; i++) peak = fmax(peak, series[i].tube_length);
+    double peak = 0, ring_peak = 0;
+    for (int i = 0; i < trials; i++) {
+        peak = fmax(peak, series[i].tube_length);
+        ring_peak = fmax(ring_peak, series[i].ring_length);
+    }
     int chosen = 0;
-    while (series[chosen].tube_length < PEAK_SHARE * peak) chosen++;
+    while (series[chosen].ring_length < PEAK_SHARE * ring_peak) chosen++;
     out.noise = series[0].flat_noise;
     trial best = series[chosen];
     if (best.radius < NOISE_RADII * out.noise && NOISE_RADII * out.noise < last)
@@ -138,7 +146,7 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.radius = best.radius;
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;
-    out.has_tubes = best.tube_length >= TUBE_LEAST * out.size;
+    out.has_tubes = peak >= TUBE_LEAST * out.size;
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;
     return status;

@@ -1,0 +1,14 @@
+/* segment/merge_tree.h: branches of a plant by the distances along it alone, without classes. Internal. */
+#ifndef PLANTIMETER_SEGMENT_MERGE_TREE_H
+#define PLANTIMETER_SEGMENT_MERGE_TREE_H
+
+#include "segment/graph.h"
+
+/** The branches of a graph, from distance (of each point from the base; points at INFINITY are left out): going from far
+ * to near, every farthest point starts a branch; where branches meet that reach more than reach above the meeting, and
+ * have at least least points each, they end there, and what lies below is trunk; a lesser one is swallowed by what it
+ * meets. branch: out, one a point, -1: trunk or left out. Gives their number in count. Ties go to the earlier point. */
+plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double reach, size_t least, int32_t *branch,
+                          size_t *count, plm_error *error);
+
+#endif
