@@ -139,8 +139,10 @@ static float smooth_spacing_at(const plm_index *index, const float (*xyz)[3], ui
     float squared[SPACING_NEIGHBOURS + 1], near[SPACING_NEIGHBOURS + 1];
     const size_t known = others_near(index, xyz, self, row, squared);
     row[known] = self;
-    for (size_t j = 0; j <= known; j++)
-        near[j] = spacing_at(xyz, row[j], its, others_near(index, xyz, row[j], its, squared));
+    for (size_t j = 0; j <= known; j++) {
+        const size_t its_count = others_near(index, xyz, row[j], its, squared);
+        near[j] = spacing_at(xyz, row[j], its, its_count);
+    }
     return median_of(near, known + 1);
 }
 

@@ -30,6 +30,7 @@ typedef struct work {
     bool *allowed;
     uint32_t *source, *parent, *mark;
     float *start, *value;
+    uint32_t *trail; /* from the leaf's farthest point to the foot */
     uint32_t stamp;
 } work;
 
@@ -143,7 +144,7 @@ static void measure_stations(work *w)
     plm_leaf_way *way = &w->way;
     const double margin = (w->sketch->habit == PLM_HABIT_COMPOUND ? JOINED_COMPOUND : JOINED) * way->window;
     size_t trail_count = 0, begin = 0, end = 0;
-    uint32_t *trail = (uint32_t *)w->value;
+    uint32_t *trail = w->trail;
     for (uint32_t i = way->order[way->count - 1]; i != UINT32_MAX; i = w->parent[i]) trail[trail_count++] = i;
     for (size_t k = 0; k < way->station_count; k++) {
         const double low = (double)k * way->step - 0.5 * way->window, high = low + way->window;
@@ -389,6 +390,7 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.parent = plm_scratch_take(&w.scratch, count, sizeof *w.parent);
     w.mark = plm_scratch_take(&w.scratch, count, sizeof *w.mark);
     w.start = plm_scratch_take(&w.scratch, count, sizeof *w.start);
+    w.trail = plm_scratch_take(&w.scratch, count, sizeof *w.trail);
     w.value = plm_scratch_take(&w.scratch, 4 * count + STATIONS_MOST, sizeof *w.value);
     w.way.order = plm_scratch_take(&w.scratch, count, sizeof *w.way.order);
     w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
