@@ -219,7 +219,14 @@ plm_status plm_graph_walk(const plm_graph *graph, const plm_walk *walk, plm_erro
             if (walk->origin) walk->origin[source] = (int32_t)i;
             heap_add(&h, source);
         }
-        while (h.count) relax(graph, walk, &h, heap_pop(&h));
+        size_t reached = 0;
+        while (h.count) {
+            const uint32_t here = heap_pop(&h);
+            if (walk->order) walk->order[reached] = here;
+            reached++;
+            relax(graph, walk, &h, here);
+        }
+        if (walk->reached) *walk->reached = reached;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

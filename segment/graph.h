@@ -41,7 +41,8 @@ size_t plm_graph_components(const plm_graph *graph, const int32_t *colour, int32
 /** Distances along the graph from sources. weight[i] (NULL: 1) multiplies the halves of edges that end at point i.
  * distance: out, INFINITY where not reached; parent (may be NULL): out, UINT32_MAX at sources and where not reached;
  * origin (may be NULL): out, the place in source[] of the source that a point belongs to, -1 where not reached. Ties go
- * to the earlier point. start (may be NULL): distances that the sources begin with. */
+ * to the earlier point. start (may be NULL): distances that the sources begin with. order (may be NULL): out, the points
+ * reached, by distance, each after its parent; *reached their number. */
 typedef struct plm_walk {
     const uint32_t *source;
     size_t source_count;
@@ -52,6 +53,8 @@ typedef struct plm_walk {
     float *distance;
     uint32_t *parent;
     int32_t *origin;
+    uint32_t *order;
+    size_t *reached;
 } plm_walk;
 
 plm_status plm_graph_walk(const plm_graph *graph, const plm_walk *walk, plm_error *error);

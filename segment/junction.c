@@ -9,7 +9,6 @@
 #include "segment/scratch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double WINDOW = 3;                         /* in steps of a working cell */
@@ -36,18 +35,6 @@ typedef struct work {
 
 /* ---- The way from the foot ------------------------------------------------------------------------------------- */
 
-typedef struct ranked {
-    float distance;
-    uint32_t point;
-} ranked;
-
-static int by_distance(const void *a, const void *b)
-{
-    const ranked *p = a, *q = b;
-    if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
-    return (p->point > q->point) - (p->point < q->point);
-}
-
 /* Distances within a leaf from its foot, and its points in their order. No points where the leaf has no foot. */
 static plm_status walk_leaf(work *w, int32_t leaf, plm_error *error)
 {
@@ -71,19 +58,10 @@ static plm_status walk_leaf(work *w, int32_t leaf, plm_error *error)
                            .start = w->start,
                            .allowed = w->allowed,
                            .distance = w->way.distance,
-                           .parent = w->parent};
-    const plm_status status = plm_graph_walk(&s->graph, &walk, error);
-    if (status != PLM_OK) return status;
-    ranked *rank = plm_alloc(count, sizeof *rank, error);
-    if (!rank) return PLM_E_MEMORY;
-    size_t reached = 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (w->allowed[i] && isfinite(w->way.distance[i])) rank[reached++] = (ranked){w->way.distance[i], i};
-    qsort(rank, reached, sizeof *rank, by_distance);
-    for (size_t k = 0; k < reached; k++) w->way.order[k] = rank[k].point;
-    plm_free(rank);
-    w->way.count = reached;
-    return PLM_OK;
+                           .parent = w->parent,
+                           .order = w->way.order,
+                           .reached = &w->way.count};
+    return plm_graph_walk(&s->graph, &walk, error);
 }
 
 /* Marks the points at distances in [low, high) that are joined, among them, with the way from tip to foot. */

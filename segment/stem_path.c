@@ -4,7 +4,6 @@
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double THICK = 0.5; /* of the stem's radius: a tube that may be stem */
@@ -42,8 +41,14 @@ static uint32_t extreme_point(const plm_sketch *sketch, const bool *candidate, b
     return best;
 }
 
-static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, float *distance, uint32_t *parent,
-                            plm_error *error)
+/* The ways from the base to every point. */
+typedef struct tube_ways {
+    float *distance;
+    uint32_t *parent, *order;
+    size_t reached;
+} tube_ways;
+
+static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, tube_ways *ways, plm_error *error)
 {
     float *weight = plm_alloc(sketch->working.count, sizeof *weight, error);
     if (!weight) return PLM_E_MEMORY;
@@ -51,8 +56,13 @@ static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, float *dist
         const double ratio = sketch->scale.stem_radius / fmax(sketch->point[i].radius, 1e-3 * sketch->scale.radius);
         weight[i] = (float)(sketch->is_tube[i] ? fmin(fmax(ratio * ratio, COST_LEAST), COST_MOST) : COST_BLADE);
     }
-    const plm_walk walk = {
-        .source = &base, .source_count = 1, .weight = weight, .distance = distance, .parent = parent};
+    const plm_walk walk = {.source = &base,
+                           .source_count = 1,
+                           .weight = weight,
+                           .distance = ways->distance,
+                           .parent = ways->parent,
+                           .order = ways->order,
+                           .reached = &ways->reached};
     const plm_status status = plm_graph_walk(&sketch->graph, &walk, error);
     plm_free(weight);
     return status;
@@ -86,18 +96,6 @@ static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-typedef struct ranked {
-    float distance;
-    uint32_t point;
-} ranked;
-
-static int by_distance(const void *a, const void *b)
-{
-    const ranked *p = a, *q = b;
-    if (p->distance != q->distance) return p->distance < q->distance ? -1 : 1;
-    return (p->point > q->point) - (p->point < q->point);
-}
-
 /* Typical radius of the tube points on the lower part of the way from a point to the base. */
 static double lower_radius(const plm_sketch *sketch, uint32_t top, const uint32_t *parent, float *value)
 {
@@ -111,27 +109,20 @@ static double lower_radius(const plm_sketch *sketch, uint32_t top, const uint32_
 
 /* The end of the stem: the point to which the way from the base is thick for the longest, what is thin on the way taken
  * off twice. The highest thick point may stand on a petiole that rises beyond the stem's tip. */
-static plm_status thickest_way(const plm_sketch *sketch, const float *distance, const uint32_t *parent, uint32_t *top,
-                               plm_error *error)
+static plm_status thickest_way(const plm_sketch *sketch, const tube_ways *ways, uint32_t *top, plm_error *error)
 {
     const size_t count = sketch->working.count;
     plm_scratch scratch = {.error = error};
-    ranked *order = plm_scratch_take(&scratch, count, sizeof *order);
     float *gain = plm_scratch_take(&scratch, count, sizeof *gain);
     float *usual = plm_scratch_take(&scratch, count, sizeof *usual); /* radius of the stem on the way so far */
     if (!scratch.failed) {
+        const uint32_t *parent = ways->parent;
         const float lower = (float)lower_radius(sketch, *top, parent, gain);
         const double memory = MEMORY * sketch->scale.radius;
-        size_t reached = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            gain[i] = 0;
-            usual[i] = lower;
-            if (isfinite(distance[i])) order[reached++] = (ranked){distance[i], i};
-        }
-        qsort(order, reached, sizeof *order, by_distance);
+        for (size_t i = 0; i < count; i++) gain[i] = 0, usual[i] = lower;
         uint32_t best = *top;
-        for (size_t k = 0; k < reached; k++) { /* parents come before their children */
-            const uint32_t i = order[k].point;
+        for (size_t k = 0; k < ways->reached; k++) {
+            const uint32_t i = ways->order[k];
             if (parent[i] == UINT32_MAX) continue;
             const double length = plm_graph_length(&sketch->graph, i, parent[i]), radius = sketch->point[i].radius;
             const double before = usual[parent[i]], share = fmin(length / memory, 1);
@@ -141,7 +132,7 @@ static plm_status thickest_way(const plm_sketch *sketch, const float *distance, 
             usual[i] = (float)(is_stout ? slimmer : before);
         }
         for (uint32_t i = 0; i < count; i++)
-            if (isfinite(distance[i]) && gain[i] > gain[best]) best = i;
+            if (isfinite(ways->distance[i]) && gain[i] > gain[best]) best = i;
         *top = best;
     }
     plm_scratch_free(&scratch, NULL);
@@ -348,8 +339,9 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     const size_t count = sketch->working.count;
     plm_scratch scratch = {.error = error};
     bool *candidate = plm_scratch_take(&scratch, count, sizeof *candidate);
-    float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
-    uint32_t *parent = plm_scratch_take(&scratch, count, sizeof *parent);
+    tube_ways ways = {.distance = plm_scratch_take(&scratch, count, sizeof *ways.distance),
+                      .parent = plm_scratch_take(&scratch, count, sizeof *ways.parent),
+                      .order = plm_scratch_take(&scratch, count, sizeof *ways.order)};
     uint32_t *chain = plm_scratch_take(&scratch, count, sizeof *chain);
     plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
     plm_stem_path stem = {0};
@@ -358,15 +350,15 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     if (status != PLM_OK) goto done;
     const uint32_t base = extreme_point(sketch, candidate, false);
     if (base == UINT32_MAX) goto done;
-    status = tube_walk(sketch, base, distance, parent, error);
+    status = tube_walk(sketch, base, &ways, error);
     if (status != PLM_OK) goto done;
-    for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(distance[i]);
+    for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(ways.distance[i]);
     uint32_t top = extreme_point(sketch, candidate, true);
-    status = thickest_way(sketch, distance, parent, &top, error);
+    status = thickest_way(sketch, &ways, &top, error);
     if (status != PLM_OK) goto done;
     if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) goto done;
     size_t length = 0;
-    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) chain[length++] = i;
+    for (uint32_t i = top; i != UINT32_MAX; i = ways.parent[i]) chain[length++] = i;
     for (size_t k = 0; k < length / 2; k++) {
         const uint32_t other = chain[k];
         chain[k] = chain[length - 1 - k];
