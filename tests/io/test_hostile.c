@@ -1,5 +1,6 @@
 /* Hostile files: each is refused with the message that tests/hostile/expected.tsv gives; every cut of a good file is
  * refused; every allocation may fail. */
+#include "support/failing.h"
 #include "support/test.h"
 
 #include <dirent.h>
@@ -129,27 +130,6 @@ static void every_cut_of_a_good_file_is_refused(void **unused)
     test_remove_folder(folder);
 }
 
-/** An allocator that fails once, at a chosen call. */
-typedef struct failing {
-    long calls, fail_at, alive;
-} failing;
-
-static void *failing_reallocate(void *block, size_t size, void *user)
-{
-    failing *state = user;
-    if (state->calls++ == state->fail_at) return NULL;
-    void *result = realloc(block, size);
-    state->alive += !block && result;
-    return result;
-}
-
-static void failing_release(void *block, void *user)
-{
-    failing *state = user;
-    state->alive -= block != NULL;
-    free(block);
-}
-
 static void every_allocation_of_a_reader_may_fail(void **unused)
 {
     (void)unused;
@@ -157,13 +137,13 @@ static void every_allocation_of_a_reader_may_fail(void **unused)
     char *folder = test_make_folder();
     for (int kind = 0; kind < 4; kind++) {
         const size_t size = good_file(kind, folder, bytes);
-        failing state = {0};
-        const plm_allocator allocator = {failing_reallocate, failing_release, &state};
+        test_failing state = {0};
+        const plm_allocator allocator = test_failing_allocator(&state);
         plm_status status = PLM_E_MEMORY;
         for (long at = 0; status != PLM_OK; at++) {
             plm_error error = {0};
             plm_cloud cloud = {.count = 77};
-            state = (failing){.fail_at = at};
+            state = (test_failing){.fail_at = at};
             plm_set_allocator(&allocator);
             status = plm_cloud_parse(bytes, size, "x", kind == 3 ? NULL : &labelled, &cloud, NULL, &error);
             if (status == PLM_OK) plm_cloud_free(&cloud);
@@ -188,12 +168,12 @@ static void every_allocation_of_a_writer_may_fail_and_leaves_no_file(void **unus
     assert_ok(plm_cloud_create(2, 0, &cloud, &error));
     memset(cloud.xyz, 0, 2 * sizeof *cloud.xyz);
     for (size_t i = 0; i < COUNT(names); i++) {
-        failing state = {0};
-        const plm_allocator allocator = {failing_reallocate, failing_release, &state};
+        test_failing state = {0};
+        const plm_allocator allocator = test_failing_allocator(&state);
         plm_status status = PLM_E_MEMORY;
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         for (long at = 0; status != PLM_OK; at++) {
-            state = (failing){.fail_at = at};
+            state = (test_failing){.fail_at = at};
             plm_set_allocator(&allocator);
             status = plm_cloud_write(path, &cloud, &error);
             plm_set_allocator(NULL);

@@ -1,4 +1,5 @@
 /* Meshes read from files: what was written comes back, polygons become fans, and what is no mesh is refused with its place. */
+#include "support/failing.h"
 #include "support/test.h"
 
 #include "io/io.h"
@@ -197,27 +198,6 @@ static void every_cut_of_a_good_file_is_refused(void **state)
     }
 }
 
-/** An allocator that fails once, at a chosen call. */
-typedef struct failing {
-    long calls, fail_at, alive;
-} failing;
-
-static void *failing_reallocate(void *block, size_t size, void *user)
-{
-    failing *state = user;
-    if (state->calls++ == state->fail_at) return NULL;
-    void *result = realloc(block, size);
-    state->alive += !block && result;
-    return result;
-}
-
-static void failing_release(void *block, void *user)
-{
-    failing *state = user;
-    state->alive -= block != NULL;
-    free(block);
-}
-
 static void every_allocation_may_fail(void **unused)
 {
     (void)unused;
@@ -226,8 +206,8 @@ static void every_allocation_may_fail(void **unused)
         plm_error error = {0};
         plm_mesh mesh;
         uint8_t *label;
-        failing state = {.fail_at = at};
-        const plm_allocator allocator = {failing_reallocate, failing_release, &state};
+        test_failing state = {.fail_at = at};
+        const plm_allocator allocator = test_failing_allocator(&state);
         plm_set_allocator(&allocator);
         status = plm_mesh_parse(ascii, sizeof ascii - 1, "x", &mesh, &label, &error);
         if (status == PLM_OK) {
