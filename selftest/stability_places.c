@@ -29,38 +29,47 @@ static double side(const plm_cloud *cloud, int i, int j)
     return plm_norm(gap);
 }
 
+typedef struct place {
+    plm_cloud cloud; /* the square, where status is PLM_OK georeferenced */
+    plm_georeference reference;
+    plm_status status;
+    plm_error why;
+} place;
+
+/* False where there is nothing to check (and nothing to free). */
+static bool put_square(plm_checker *checker, const char *crs_text, const double at[3], double dx, double dy, place *p)
+{
+    plm_crs crs;
+    *p = (place){0};
+    if (checker->status == PLM_OK) checker->status = plm_cloud_create(4, 0, &p->cloud, checker->error);
+    if (checker->status != PLM_OK) return false;
+    square(&p->cloud, at, dx, dy);
+    p->status = plm_crs_parse(crs_text, &crs, &p->why);
+    if (p->status == PLM_OK) p->status = plm_cloud_georeference(&p->cloud, &crs, &p->reference, &p->why);
+    return true;
+}
+
 /* A step in the file's numbers is rounded to float (2^-24 of it), and there is the double's step at the origin. */
 static void check_square(plm_checker *checker, const char *crs_text, const double at[3], double dx, double dy,
                          double width, double height, double bound)
 {
-    plm_error why = {0};
-    plm_cloud cloud;
-    plm_crs crs;
-    plm_georeference reference;
-    if (checker->status != PLM_OK) return;
-    checker->status = plm_cloud_create(4, 0, &cloud, checker->error);
-    if (checker->status != PLM_OK) return;
-    square(&cloud, at, dx, dy);
-    float file[4][3];
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 3; k++) file[i][k] = cloud.xyz[i][k];
-    plm_status status = plm_crs_parse(crs_text, &crs, &why);
-    if (status == PLM_OK) status = plm_cloud_georeference(&cloud, &crs, &reference, &why);
-    if (plm_check_ran(checker, "georeference", status, &why)) {
+    place p;
+    if (!put_square(checker, crs_text, at, dx, dy, &p)) return;
+    if (plm_check_ran(checker, "georeference", p.status, &p.why)) {
         const plm_bound held = {.error = bound, .condition = 1, .note = "float steps in the file and in the result"};
-        plm_check_value(checker, "width of the square", side(&cloud, 0, 1), width, held);
-        plm_check_value(checker, "height of the square", side(&cloud, 0, 2), height, held);
+        plm_check_value(checker, "width of the square", side(&p.cloud, 0, 1), width, held);
+        plm_check_value(checker, "height of the square", side(&p.cloud, 0, 2), height, held);
         for (int i = 0; i < 4 && checker->status == PLM_OK; i += 3) {
-            const double local[3] = {cloud.xyz[i][0], cloud.xyz[i][1], cloud.xyz[i][2]};
+            const double local[3] = {p.cloud.xyz[i][0], p.cloud.xyz[i][1], p.cloud.xyz[i][2]};
             double back[3] = {NAN, NAN, NAN};
-            if (!plm_check_ran(checker, "way back", plm_georeference_restore(&reference, local, back, &why), &why))
-                break;
-            const double north = back[1] - at[1] - (double)file[i][1];
-            plm_check_value(checker, "way back, northing or latitude", north, 0,
+            const plm_status status = plm_georeference_restore(&p.reference, local, back, &p.why);
+            if (!plm_check_ran(checker, "way back", status, &p.why)) break;
+            const double in_file = (float)(i & 2 ? dy : -dy);
+            plm_check_value(checker, "way back, northing or latitude", back[1] - at[1] - in_file, 0,
                             (plm_bound){.error = 4 * bound, .condition = 1, .scale = dy});
         }
     }
-    plm_cloud_free(&cloud);
+    plm_cloud_free(&p.cloud);
 }
 
 /* The ring round a pole: longitudes mean nothing there, distances do. */
@@ -93,35 +102,21 @@ static void pole(plm_checker *checker, double latitude)
 /* Longitudes that jump from 180 to -180 are 360 degrees apart: float offsets cannot hold them, and that is said. */
 static void jump(plm_checker *checker)
 {
-    plm_error why = {0};
-    plm_cloud cloud;
-    const plm_crs crs = {.is_geodetic = true};
-    plm_georeference reference;
-    if (checker->status != PLM_OK) return;
-    checker->status = plm_cloud_create(4, 0, &cloud, checker->error);
-    if (checker->status != PLM_OK) return;
+    place p;
     const double at[3] = {0, 10, 0};
-    square(&cloud, at, 179.99999, 1e-5);
-    plm_check_refused(checker, "georeference", plm_cloud_georeference(&cloud, &crs, &reference, &why), &why);
-    plm_cloud_free(&cloud);
+    if (!put_square(checker, "geodetic", at, 179.99999, 1e-5, &p)) return;
+    plm_check_refused(checker, "georeference", p.status, &p.why);
+    plm_cloud_free(&p.cloud);
 }
 
 /* Beyond 84 degrees there is no UTM. */
 static void beyond_utm(plm_checker *checker, const char *crs_text, double northing)
 {
-    plm_error why = {0};
-    plm_cloud cloud;
-    plm_crs crs;
-    plm_georeference reference;
-    if (checker->status != PLM_OK) return;
-    checker->status = plm_cloud_create(4, 0, &cloud, checker->error);
-    if (checker->status != PLM_OK) return;
+    place p;
     const double at[3] = {500000, northing, 0};
-    square(&cloud, at, 1, 1);
-    plm_status status = plm_crs_parse(crs_text, &crs, &why);
-    if (status == PLM_OK) status = plm_cloud_georeference(&cloud, &crs, &reference, &why);
-    plm_check_refused(checker, "georeference", status, &why);
-    plm_cloud_free(&cloud);
+    if (!put_square(checker, crs_text, at, 1, 1, &p)) return;
+    plm_check_refused(checker, "georeference", p.status, &p.why);
+    plm_cloud_free(&p.cloud);
 }
 
 void plm_stability_places(plm_checker *checker)
