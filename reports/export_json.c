@@ -14,7 +14,7 @@ static plm_status write_json(const char *folder, const char *name, json_t *objec
     plm_status status = PLM_OK;
     if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, name) >= sizeof path)
         status = plm_fail(error, PLM_E_ARGUMENT, "the folder's name is too long");
-    if (status == PLM_OK) status = plm_json_write(path, object, error);
+    if (status == PLM_OK) status = plm_json_write(path, object, PLM_JSON_DIGITS, error);
     json_decref(object);
     return status;
 }

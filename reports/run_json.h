@@ -3,6 +3,7 @@
 #ifndef PLANTIMETER_REPORTS_RUN_JSON_H
 #define PLANTIMETER_REPORTS_RUN_JSON_H
 
+#include "io/json_file.h"
 #include "reports/results.h"
 
 /** What is known of one plant's run beside its measurement. Strings are the caller's. */
@@ -22,9 +23,6 @@ typedef struct plm_run_plant {
     char (*file)[64 + 256]; /**< names of the files written beside the tables */
 } plm_run_plant;
 
-/** Makes jansson allocate through the library's seam. Called by whatever makes JSON. */
-void plm_json_use_seam(void);
-
 /** The plant's object in run.json, the caller's (json_decref). */
 plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_error *error);
 
@@ -36,14 +34,5 @@ plm_status plm_run_json_read(const char *path, json_t **root, plm_error *error);
 
 /** The results as one object for `--json`: version, plants with their values. The caller's. */
 plm_status plm_results_json(const plm_results *results, json_t **object, plm_error *error);
-
-/** A text of the user's as a JSON string, bytes that are no UTF-8 replaced; the caller's, NULL without memory. */
-json_t *plm_json_text(const char *text);
-
-/** Writes an object to a file (plm_output), nine digits a number. NULL: what jansson could not make, PLM_E_MEMORY. */
-plm_status plm_json_write(const char *path, const json_t *object, plm_error *error);
-
-/** Fails with PLM_E_MEMORY where object is NULL: what jansson could not make. */
-plm_status plm_json_check(const json_t *object, plm_error *error);
 
 #endif

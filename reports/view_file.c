@@ -205,7 +205,7 @@ static plm_status write_draft(const view_draft *draft, const char *path, const c
                              plm_json_text(plant_id), "low", draft->low[0], draft->low[1], draft->low[2], "step",
                              draft->step, "organs", organs_json(draft), "points", points_json(draft), "leaves",
                              mesh_json(draft, &draft->leaves), "hull", mesh_json(draft, &draft->measurement->hull));
-    const plm_status status = plm_json_write(path, root, error);
+    const plm_status status = plm_json_write(path, root, PLM_JSON_DIGITS, error);
     json_decref(root);
     return status;
 }

@@ -1,11 +1,9 @@
 /* simulate/truth_json.c: the truth as JSON, in the layout of the development clouds' truth files: metres and degrees. */
-#include <jansson.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cloud/linear.h"
-#include "io/io.h"
+#include "io/json_file.h"
 #include "simulate/simulate.h"
 
 /* ---- Values: a value that JSON cannot hold (NaN: not known) leaves its key out -------------------------------------- */
@@ -316,24 +314,10 @@ static json_t *scan_object(const plm_scan *scan)
     return object;
 }
 
-static plm_status write_json(const char *path, const json_t *object, plm_error *error)
-{
-    plm_output *output;
-    char *text = object ? json_dumps(object, JSON_INDENT(1)) : NULL;
-    if (!text) return plm_fail(error, PLM_E_MEMORY, "%s: out of memory", path);
-    plm_status status = plm_output_open(path, &output, error);
-    if (status == PLM_OK) {
-        status = plm_output_print(output, error, "%s\n", text);
-        const plm_status closed = plm_output_close(output, status == PLM_OK, error);
-        if (status == PLM_OK) status = closed;
-    }
-    free(text);
-    return status;
-}
-
 plm_status plm_truth_write(const char *path, const char *plant_id, const plm_virtual_plant *plant, const plm_scan *scan,
                            plm_error *error)
 {
+    plm_json_use_seam();
     json_t *object = json_object();
     put_text(object, "plant_id", plant_id);
     put_text(object, "kind", plant->kind);
@@ -348,7 +332,7 @@ plm_status plm_truth_write(const char *path, const char *plant_id, const plm_vir
     put(object, "leaf_overlap", numbers(plant->whole.leaf_overlap, 3));
     put_text(object, "case", plant_id);
     if (scan) put(object, "scan", scan_object(scan));
-    const plm_status status = write_json(path, object, error);
+    const plm_status status = plm_json_write(path, object, PLM_JSON_DIGITS_ALL, error);
     json_decref(object);
     return status;
 }
@@ -381,6 +365,7 @@ static json_t *case_object(const plm_truth_case *row)
 plm_status plm_truth_index_write(const char *path, const char *set, const plm_truth_case *cases, size_t count,
                                  plm_error *error)
 {
+    plm_json_use_seam();
     json_t *object = json_object(), *rows = json_array(), *classes = json_object();
     for (int k = 0; k < PLM_LABEL_COUNT; k++) {
         const char number[2] = {(char)('0' + k), 0};
@@ -391,7 +376,7 @@ plm_status plm_truth_index_write(const char *path, const char *set, const plm_tr
     put_text(object, "unit", "m");
     put(object, "classes", classes);
     put(object, "cases", rows);
-    const plm_status status = write_json(path, object, error);
+    const plm_status status = plm_json_write(path, object, PLM_JSON_DIGITS_ALL, error);
     json_decref(object);
     return status;
 }

@@ -1,13 +1,15 @@
 /* simulate/view_files.c: a depth camera's view as files: what a reconstruction from views starts from. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
 #include "io/io.h"
+#include "io/json_file.h"
 #include "simulate/view.h"
 
 /* Metres of a unit of the depth image: 65535 units reach 6.5 m. */
 static const double depth_unit = 1e-4;
+
+enum { POSE_DIGITS = 12 };
 
 static plm_status path_of(const char *folder, int number, const char *ending, char path[4096], plm_error *error)
 {
@@ -87,6 +89,7 @@ static plm_status write_pose(const plm_stage_set *stage, const plm_scan_options 
 {
     const plm_camera *camera = &view->camera;
     char path[4096];
+    plm_json_use_seam();
     json_t *root = json_pack(
         "{s:s, s:i, s:i, s:f, s:{s:i, s:i, s:f, s:f, s:f, s:f}, s:o, s:o, s:{s:[f,f,f], s:[f,f,f]}, s:f, s:f}",
         "convention",
@@ -99,18 +102,9 @@ static plm_status write_pose(const plm_stage_set *stage, const plm_scan_options 
         "true_camera_to_world", pose_json(camera), "true_axis", "point", stage->centre[0], stage->centre[1],
         stage->centre[2], "direction", 0.0, 0.0, 1.0, "turn_degrees", 360.0 * number / options->views,
         "depth_noise_m_at_0.4_m", options->noise);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
-    json_decref(root);
-    if (!text) return plm_fail(error, PLM_E_MEMORY, "out of memory for the pose of view %d", number);
-    plm_output *output;
     plm_status status = path_of(options->views_folder, number, "json", path, error);
-    if (status == PLM_OK) status = plm_output_open(path, &output, error);
-    if (status == PLM_OK) {
-        status = plm_output_print(output, error, "%s\n", text);
-        const plm_status closed = plm_output_close(output, status == PLM_OK, error);
-        if (status == PLM_OK) status = closed;
-    }
-    free(text);
+    if (status == PLM_OK) status = plm_json_write(path, root, POSE_DIGITS, error);
+    json_decref(root);
     return status;
 }
 

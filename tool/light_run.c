@@ -265,17 +265,8 @@ static plm_status write_record(const light_job *job, plm_error *error)
                   light->reflectance[2], "transmittance", light->transmittance[0], light->transmittance[1],
                   light->transmittance[2], "power_w", light->irradiance > 0 ? 0 : light->power, "irradiance_w_m2",
                   light->irradiance, "depth", light->depth, "seed", (json_int_t)light->seed, "plants", job->plants);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
+    const plm_status status = plm_json_write(path, root, PLM_JSON_DIGITS, error);
     json_decref(root);
-    if (!text) return plm_fail(error, PLM_E_MEMORY, "out of memory for light.json");
-    plm_output *output;
-    plm_status status = plm_output_open(path, &output, error);
-    if (status == PLM_OK) {
-        status = plm_output_print(output, error, "%s\n", text);
-        const plm_status closed = plm_output_close(output, status == PLM_OK, error);
-        if (status == PLM_OK) status = closed;
-    }
-    plm_free(text);
     return status;
 }
 
