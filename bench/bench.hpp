@@ -98,6 +98,12 @@ class Run
         return static_cast<size_t>(count * factor);
     }
 
+    /** How often each rival has its turn. */
+    int turns() const
+    {
+        return repeats;
+    }
+
     /** Both rivals in turns; gives the median seconds of ours (NAN where the row is not wanted). */
     template <class Ours, class Theirs> double compare(const Goal &goal, Ours ours, Theirs theirs)
     {

@@ -1,8 +1,8 @@
 /* bench/bench_leaf_area.cpp: goals P10 and P11: leaf area from 10 k points (noise 0 to 1 mm, one layer or two, 1 mm apart)
  * against CGAL's Fixed_alpha_shape_3 on the same points in the same run, error and time; then 2 k and 50 k points, and
- * densities 10:1. The leaves are curved ellipses of 80 to 150 cm2 whose area is integrated numerically.
- *
- *   bench_leaf_area [REPEATS] */
+ * densities 10:1. The leaves are curved ellipses of 80 to 150 cm2 whose area is integrated numerically. Rows of errors
+ * stand beside their bar, and beside the rival's error. */
+#include "bench.hpp"
 #include "mesh/mesh.h"
 
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -11,14 +11,8 @@
 #include <CGAL/Fixed_alpha_shape_cell_base_3.h>
 #include <CGAL/Fixed_alpha_shape_vertex_base_3.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <random>
-#include <vector>
 
 namespace
 {
@@ -94,27 +88,13 @@ Points sample(const Leaf &leaf, size_t count, double noise, Noise kind, double l
     return points;
 }
 
-double seconds()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values)
-{
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
 double own_area(const Points &points)
 {
     const plm_surface_options options = {0, -1, -1, 0, 0};
     plm_leaf_surface surface;
     plm_error error;
     const auto *xyz = reinterpret_cast<const float(*)[3]>(points.data());
-    if (plm_leaf_surface_make(xyz, points.size(), &options, &surface, &error) != PLM_OK) {
-        std::fprintf(stderr, "bench_leaf_area: %s\n", error.message);
-        std::exit(1);
-    }
+    bench::check(plm_leaf_surface_make(xyz, points.size(), &options, &surface, &error), error);
     const double area = surface.area;
     plm_leaf_surface_free(&surface);
     return area;
@@ -136,60 +116,64 @@ double shape_area(const Points &points, double area)
     return sum;
 }
 
+/* Mean errors in percent, and what the turns of both rivals took. */
 struct Score {
     double error = 0, other = 0;
-    std::vector<double> ratios, times;
+    std::vector<double> own, rival, ratio;
     size_t count = 0;
 
     void add(const Leaf &leaf, const Points &points, int repeats)
     {
         const double truth = leaf.area();
-        error += 100 * std::fabs(own_area(points) / truth - 1);
+        double area = own_area(points);
+        error += 100 * std::fabs(area / truth - 1);
         count++;
         for (int i = 0; i < repeats; i++) {
-            const double begin = seconds();
-            own_area(points);
-            const double middle = seconds();
-            const double area = shape_area(points, truth);
-            const double end = seconds();
-            times.push_back(middle - begin);
-            ratios.push_back((middle - begin) / (end - middle));
-            if (i == 0) other += 100 * std::fabs(area / truth - 1);
+            own.push_back(bench::timed(1, [&] { own_area(points); }));
+            rival.push_back(bench::timed(1, [&] { area = shape_area(points, truth); }));
+            ratio.push_back(own.back() / rival.back());
         }
+        if (repeats > 0) other += 100 * std::fabs(area / truth - 1);
     }
 };
 
-void bench_noise(Noise kind, const char *name, int repeats)
+void bench_noise(bench::Run &run, Noise kind, const std::string &name)
 {
+    if (!run.wanted("P10")) return;
     Score score;
     for (const Leaf &leaf : leaves)
         for (double noise : {0.0, 0.25e-3, 0.5e-3, 0.75e-3, 1e-3})
-            for (double layers : {0.0, 1e-3})
-                score.add(leaf, sample(leaf, 10000, noise, kind, layers, 1, (unsigned)(1 + score.count)), repeats);
-    const double n = (double)score.count;
-    std::printf("10 k points, noise 0-1 mm %s, one or two layers: %.1f ms\n", name, 1e3 * median(score.times));
-    std::printf("P10 mean error, %%              %.2f (goal 1.5; Fixed_alpha_shape_3 %.2f)\n", score.error / n,
-                score.other / n);
-    std::printf("    own / Fixed_alpha_shape_3  %.3f (goal 0.35)\n", median(score.ratios));
+            for (double layers : {0.0, 1e-3}) {
+                const auto seed = static_cast<unsigned>(1 + score.count);
+                score.add(leaf, sample(leaf, run.points(1e4), noise, kind, layers, 1, seed), run.turns());
+            }
+    const double n = static_cast<double>(score.count), error = score.error / n, other = score.other / n;
+    const std::string what = "leaf area, 1e4 points, noise " + name;
+    run.report({"P10", what.c_str(), "bar of the error", 1, 1}, error, 1.5, error / 1.5, "%");
+    run.report({"P10", what.c_str(), "its error, Fixed_alpha_shape_3", 1, 1}, error, other, error / other, "%");
+    run.report({"P10", what.c_str(), "CGAL Fixed_alpha_shape_3", 0.35, 1}, bench::median(score.own),
+               bench::median(score.rival), bench::median(score.ratio), "s");
 }
 
-void bench_other(const char *name, size_t count, double noise, double gradient, double goal)
+void bench_other(bench::Run &run, const char *what, double count, double gradient, double bar)
 {
+    if (!run.wanted("P11")) return;
     Score score;
     for (const Leaf &leaf : leaves)
         for (unsigned seed = 1; seed <= 3; seed++)
-            score.add(leaf, sample(leaf, count, noise, ACROSS, 0, gradient, seed), 0);
-    std::printf("P11 mean error, %%, %-11s %.2f (goal %.1f)\n", name, score.error / (double)score.count, goal);
+            score.add(leaf, sample(leaf, run.points(count), 0.3e-3, ACROSS, 0, gradient, seed), 0);
+    const double error = score.error / static_cast<double>(score.count);
+    run.report({"P11", what, "bar of the error", 1, 1}, error, bar, error / bar, "%");
 }
 } // namespace
 
 int main(int count, char **arguments)
 {
-    const int repeats = count > 1 ? std::atoi(arguments[1]) : 3;
-    bench_noise(ACROSS, "across the surface", repeats);
-    bench_noise(ALL_AROUND, "in all directions", repeats);
-    bench_other("2 k", 2000, 0.3e-3, 1, 3);
-    bench_other("50 k", 50000, 0.3e-3, 1, 1.5);
-    bench_other("10:1", 10000, 0.3e-3, 10, 3);
-    return 0;
+    bench::Run run(count, arguments);
+    bench_noise(run, ACROSS, "across");
+    bench_noise(run, ALL_AROUND, "all around");
+    bench_other(run, "leaf area, 2e3 points", 2e3, 1, 3);
+    bench_other(run, "leaf area, 5e4 points", 5e4, 1, 1.5);
+    bench_other(run, "leaf area, 1e4 points, densities 10:1", 1e4, 10, 3);
+    return run.end();
 }

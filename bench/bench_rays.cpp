@@ -189,7 +189,7 @@ template <class Ours> void compare(bench::Run &run, const char *id, const char *
 {
     std::vector<double> own, single, packet, ratio[2];
     const double million = 1e-6 * static_cast<double>(bare.count());
-    for (int turn = 0; turn < 5; turn++) {
+    for (int turn = 0; turn < run.turns(); turn++) {
         size_t rays = 0;
         const double seconds = bench::timed(1, [&] { rays = ours(); });
         own.push_back(seconds / (1e-6 * static_cast<double>(rays)));

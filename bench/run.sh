@@ -11,10 +11,6 @@ fi
 printf '%-4s %-44s %9s %-5s %-34s %9s  %6s  %5s  %s\n' goal what ours unit rival theirs ratio most met
 for program in "$1"/bench_*; do
     [ -x "$program" ] || continue
-    case $program in # these two print tables of their own
-        */bench_leaf_area) case ,$2, in *,P10,* | *,P11,* | ,all,) "$program" ;; esac; continue ;;
-        */bench_rays) case ,$2, in ,all,) "$program" ;; esac; continue ;;
-    esac
     "$program" --only "$2" ${3:+--csv "$3"}
 done
 case ,$2, in
