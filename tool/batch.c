@@ -2,6 +2,7 @@
  * names is in the tables. */
 #include "tool/batch.h"
 
+#include "cloud/clock.h"
 #include "io/io.h"
 #include "reports/run_json.h"
 #include "tool/command.h"
@@ -9,20 +10,12 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { LONGEST_PATH = 4096 };
 
 /** Writing the tables may take this share of the time. */
 static const double saving_share = 0.05;
 static const double seconds_between_saves = 5;
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* ---- Names ------------------------------------------------------------------------------------------------------ */
 
@@ -149,7 +142,7 @@ static void read_folder_leniently(batch *open)
 plm_status batch_open(batch *made, const char *folder, json_t *options, bool force, char *const *input,
                       size_t input_count, plm_error *error)
 {
-    batch open = {.folder = folder, .options = options, .saved_at = seconds_now()};
+    batch open = {.folder = folder, .options = options, .saved_at = plm_seconds_now()};
     plm_status status = name_plants(&open, input, input_count, error);
     if (status == PLM_OK && folder) status = plm_folder_make(folder, error);
     if (status == PLM_OK && folder && !force) status = read_folder(&open, error);
@@ -192,7 +185,7 @@ plm_status batch_save(batch *open, plm_error *error)
 {
     static const char *const names[] = {"traits.csv", "plants.csv", "run.json"};
     if (!open->folder) return PLM_OK;
-    const double begin = seconds_now();
+    const double begin = plm_seconds_now();
     plm_status status = PLM_OK;
     for (size_t i = 0; i < COUNT(names) && status == PLM_OK; i++) {
         char path[LONGEST_PATH];
@@ -202,7 +195,7 @@ plm_status batch_save(batch *open, plm_error *error)
                  : i == 1 ? plm_results_write_plants(&open->results, path, error)
                           : plm_run_json_write(path, open->options, &open->results, error);
     }
-    open->saved_at = seconds_now();
+    open->saved_at = plm_seconds_now();
     open->save_seconds = open->saved_at - begin;
     return status;
 }
@@ -212,7 +205,7 @@ plm_status batch_add(batch *open, size_t input, const plm_plant_report *report, 
     plm_result *before = plm_results_find(&open->results, open->plant_id[input]);
     if (before) plm_results_remove(&open->results, before);
     plm_status status = plm_results_add(&open->results, report, input + 1, record, error);
-    const double passed = seconds_now() - open->saved_at;
+    const double passed = plm_seconds_now() - open->saved_at;
     const bool is_time = passed > seconds_between_saves && passed * saving_share > open->save_seconds;
     return status == PLM_OK && is_time ? batch_save(open, error) : status;
 }

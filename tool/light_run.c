@@ -1,6 +1,7 @@
 /* tool/light_run.c: meshes in, absorbed light out: light.csv, light.json and a coloured mesh of each plant. */
 #include "tool/light_run.h"
 
+#include "cloud/clock.h"
 #include "io/io.h"
 #include "mesh/mesh.h"
 #include "reports/run_json.h"
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { LONGEST_PATH = 4096 };
 
@@ -30,13 +30,6 @@ typedef struct light_job {
     size_t done, failed;
     plm_status first_failure;
 } light_job;
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* ---- One mesh ---------------------------------------------------------------------------------------------------- */
 
@@ -106,9 +99,9 @@ static plm_status trace(const light_job *job, const lit_mesh *wanted, const plm_
     int32_t *face_group = plm_alloc(mesh->triangle_count, sizeof *face_group, error);
     plm_status status = face_group ? plm_light_groups(mesh, label, face_group, &group, &count, error) : PLM_E_MEMORY;
     if (status == PLM_OK) {
-        const double begin = seconds_now();
+        const double begin = plm_seconds_now();
         status = plm_light_trace(mesh, face_group, count, &job->settings->light, &light, error);
-        seconds = seconds_now() - begin;
+        seconds = plm_seconds_now() - begin;
     }
     if (status == PLM_OK) {
         status = plm_mesh_area(mesh, &area, error);

@@ -1,14 +1,13 @@
 /* tool/plant_run.c: one plant of a batch from file to results. */
 #include "tool/plant_run.h"
 
+#include "cloud/clock.h"
 #include "reports/plant_files.h"
 #include "reports/run_json.h"
 #include "reports/view_file.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <time.h>
 
 enum { FILES = 4, WARNINGS = 2, LONGEST_PATH = 4096 };
 
@@ -22,19 +21,6 @@ typedef struct plant_state {
     plm_run_plant record;
 } plant_state;
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static uint64_t peak_bytes(void)
-{
-    struct rusage usage;
-    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
-}
-
 static void warn(plant_state *state, const char *text)
 {
     if (state->record.warning_count < WARNINGS)
@@ -43,10 +29,10 @@ static void warn(plant_state *state, const char *text)
 
 static plm_status read_plant(const char *path, const plant_run_options *options, plant_state *state, plm_error *error)
 {
-    const double begin = seconds_now();
+    const double begin = plm_seconds_now();
     plm_status status = load_cloud(path, options->reading, options->with_files, &state->loaded, error);
-    state->record.read_seconds = seconds_now() - begin;
-    state->record.read_peak_bytes = peak_bytes();
+    state->record.read_seconds = plm_seconds_now() - begin;
+    state->record.read_peak_bytes = plm_peak_bytes();
     if (status != PLM_OK) return status;
     state->is_read = true;
     const plm_read_report *report = &state->loaded.report;
@@ -149,11 +135,11 @@ plm_status run_plant(batch *open, size_t input, const char *path, const char *sh
     if (*plant_status != PLM_OK) report.failure = trouble.message;
     if (!options->quiet) tell_warnings(&state, report.plant_id);
     plm_status status = PLM_OK;
-    const double begin = seconds_now();
+    const double begin = plm_seconds_now();
     if (state.is_measured && options->with_files)
         status = write_files(open, input, &report, input < options->views, &state, error);
-    state.record.write_seconds = seconds_now() - begin;
-    state.record.write_peak_bytes = peak_bytes();
+    state.record.write_seconds = plm_seconds_now() - begin;
+    state.record.write_peak_bytes = plm_peak_bytes();
     json_t *record = NULL;
     if (status == PLM_OK) status = plm_run_plant_json(&state.record, &record, error);
     if (status == PLM_OK) {

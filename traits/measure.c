@@ -1,5 +1,6 @@
 /* traits/measure.c: one plant from cloud to values: the stages of the plan, one after the other. Each stage is a function
  * of the job; what a stage leaves out it tells the plan. */
+#include "cloud/clock.h"
 #include "traits/axis.h"
 #include "traits/evaluate.h"
 #include "traits/plan.h"
@@ -8,8 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <time.h>
 
 /** All that the stages share. The measurement is a draft until the end. */
 typedef struct plant_job {
@@ -202,28 +201,15 @@ static plm_status (*const run[PLM_STAGE_COUNT])(plant_job *job, plm_error *error
     [PLM_STAGE_AXES] = run_axes,         [PLM_STAGE_LIGHT] = run_light,     [PLM_STAGE_TRAITS] = run_traits,
 };
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static uint64_t peak_bytes(void)
-{
-    struct rusage usage;
-    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
-}
-
 static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
 {
     plm_stage *stage = &job->draft->plan.stage[id];
     if (!stage->runs || !run[id]) return PLM_OK;
     if (job->options->progress) job->options->progress(stage->name, job->options->progress_user);
-    const double begin = seconds_now();
+    const double begin = plm_seconds_now();
     const plm_status status = run[id](job, error);
-    if (stage->runs) stage->seconds = seconds_now() - begin; /* it may have found that there is nothing to do */
-    stage->peak_bytes = peak_bytes();
+    if (stage->runs) stage->seconds = plm_seconds_now() - begin; /* it may have found that there is nothing to do */
+    stage->peak_bytes = plm_peak_bytes();
     return status;
 }
 

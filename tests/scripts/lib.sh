@@ -35,3 +35,16 @@ manual_of() {
 measured_examples() {
     "$program" measure "$source"/examples/data/*.ply -o run --files tables -q --effort fast 2>measure.log || fail "$(cat measure.log)"
 }
+
+# same_agreement COMMAND...: a script that finds the R2 and RMSE of `validate` from the same tables agrees with it, and
+# notices a table that says otherwise.
+same_agreement() {
+    measured_examples
+    manual_of run/traits.csv >manual.csv
+    "$program" validate run/traits.csv manual.csv -o agreement -q || fail 'validate'
+    "$@" run/traits.csv manual.csv agreement/agreement.csv >found.csv || fail 'its figures differ'
+    [ "$(wc -l <found.csv)" -eq 5 ] || fail "four traits were expected: $(cat found.csv)"
+    sed 's/\(leaf_area,all,rmse\),\([0-9]\)/\1,9\2/' agreement/agreement.csv >other.csv
+    "$@" run/traits.csv manual.csv other.csv >/dev/null 2>&1 && fail 'a wrong RMSE was not noticed'
+    return 0
+}
