@@ -102,6 +102,6 @@ plm_exit plm_exit_of(plm_status status);
 
 extern const plm_command plm_command_measure, plm_command_plan, plm_command_info, plm_command_traits, plm_command_help,
     plm_command_simulate, plm_command_light, plm_command_study, plm_command_validate, plm_command_compare,
-    plm_command_report, plm_command_export, plm_command_series, plm_command_selftest;
+    plm_command_report, plm_command_export, plm_command_series, plm_command_selftest, plm_command_tradeoff;
 
 #endif

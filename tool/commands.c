@@ -16,6 +16,7 @@ static const plm_command *const commands[] = {
     &plm_command_simulate, //
     &plm_command_light,    //
     &plm_command_study,    //
+    &plm_command_tradeoff, //
     &plm_command_selftest, //
     &plm_command_help,
 };
