@@ -16,7 +16,9 @@ static const double clear_ground = 0.6; /* confidence that overrules z, if it is
 static const double margin = 0.1;
 static const double snap = 25;         /* degrees: ground tilted by more is no tilted table but another frame */
 static const double clear_stem = 0.58; /* share of the tubes along another axis than z that overrules z ... */
-static const double clearer = 2.5;     /* ... if it is this many times the share along z */
+static const double clearer = 2.5;     /* ... if it is this many times the share along z, and the low end is ... */
+static const double clear_foot = 0.1; /* ... bare over this share of the height: all plants with stems seen have 0.12 or
+                                          more, rosettes, whose petioles happen to run along an axis, 0.06 or less */
 static const double upside_down = 0.2; /* what must speak for -z against z */
 static const double default_confidence = 0.3;
 
@@ -142,9 +144,9 @@ static void by_posture(const plm_posture *p, plm_frame *frame)
     for (int a = 0; a < 3; a++)
         if (p->along[a] > p->along[best]) best = a;
     const double share = p->along[best];
-    if (best != Z_AXIS && share >= clear_stem && share >= clearer * p->along[Z_AXIS]) {
-        const int axis = sign_evidence(p, best) >= 0 ? best : best + 3;
-        frame_of_axis(axis, 0.8 * share * fmin(1, 0.6 + 2 * fabs(sign_evidence(p, best))), "tubes", frame);
+    const int side = sign_evidence(p, best) >= 0 ? best : best + 3;
+    if (best != Z_AXIS && share >= clear_stem && share >= clearer * p->along[Z_AXIS] && p->foot[side] >= clear_foot) {
+        frame_of_axis(side, 0.8 * share * fmin(1, 0.6 + 2 * fabs(sign_evidence(p, best))), "tubes", frame);
     } else if (best == Z_AXIS && share >= clear_stem) {
         const double evidence = sign_evidence(p, Z_AXIS);
         const int axis = evidence < -upside_down ? Z_AXIS + 3 : Z_AXIS;

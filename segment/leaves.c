@@ -19,7 +19,14 @@ static double strap_evidence(const plm_sketch *sketch, const plm_side_group *gro
     return 0.5 * (group->tube_share < STRAP_TUBE) + 0.5 * (ratio > STRAP_RADIUS || ratio == 0);
 }
 
-/* Most points are tube, most of these are off the stem, and larger balls would find more: folded straps, seen as tubes. */
+bool plm_leaves_look_like_tubes(const plm_sketch *sketch)
+{
+    size_t tubes = 0;
+    for (size_t i = 0; i < sketch->working.count; i++) tubes += sketch->is_tube[i];
+    return sketch->scale.rises && 2 * tubes > sketch->working.count;
+}
+
+/* And most of the tubes are off the stem: a bare stem is none of this. */
 static bool leaves_are_tubes(const plm_sketch *sketch)
 {
     size_t tubes = 0, stem = 0;
@@ -27,7 +34,7 @@ static bool leaves_are_tubes(const plm_sketch *sketch)
         tubes += sketch->is_tube[i];
         stem += sketch->is_stem[i];
     }
-    return sketch->stem.count && sketch->scale.rises && 2 * tubes > sketch->working.count && 2 * stem < tubes;
+    return sketch->stem.count && 2 * stem < tubes && plm_leaves_look_like_tubes(sketch);
 }
 
 static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *groups)

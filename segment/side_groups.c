@@ -3,6 +3,7 @@
 #include "segment/side_groups.h"
 
 #include "cloud/linear.h"
+#include "segment/core.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
@@ -14,7 +15,6 @@ static const double FOOT_REACH = 1.6;                     /* a foot is judged by
 static const double FOOT_TUBE = 0.4;                      /* share of tube among them: less is no petiole's foot */
 static const double BLADE_LEAST = 0.5;                    /* in R squared */
 static const double CORE = 1.2;                           /* radius of a rosette's core, in R */
-enum { CORE_PROBES = 12 };
 
 typedef struct work {
     plm_sketch *sketch;
@@ -61,34 +61,14 @@ static plm_status start(work *w, plm_sketch *sketch, plm_side_groups *out, plm_e
 
 /* ---- The trunk ------------------------------------------------------------------------------------------------ */
 
-/* The tube point from which far-apart points of the plant are reached by the shortest ways together. */
 static plm_status find_core(work *w, plm_error *error)
 {
     plm_sketch *s = w->sketch;
-    const size_t count = s->working.count;
-    float *nearest = w->value, *sum = plm_alloc_zero(count, sizeof *sum, error);
-    if (!sum) return PLM_E_MEMORY;
-    for (size_t i = 0; i < count; i++) nearest[i] = INFINITY;
-    plm_status status = PLM_OK;
-    uint32_t probe = 0; /* each next one is the point farthest from all before; the first only starts the series */
-    for (int k = 0; k <= CORE_PROBES && status == PLM_OK; k++) {
-        const plm_walk walk = {.source = &probe, .source_count = 1, .distance = w->distance};
-        status = plm_graph_walk(&s->graph, &walk, error);
-        float most = -1;
-        for (uint32_t i = 0; i < count; i++) {
-            if (!isfinite(w->distance[i])) continue;
-            if (k) sum[i] += w->distance[i];
-            if (k && w->distance[i] < nearest[i]) nearest[i] = w->distance[i];
-            const float here = k ? nearest[i] : w->distance[i];
-            if (here > most) most = here, probe = i;
-        }
-    }
-    uint32_t centre = UINT32_MAX;
-    for (uint32_t i = 0; i < count; i++)
-        if (isfinite(nearest[i]) && s->is_tube[i] && (centre == UINT32_MAX || sum[i] < sum[centre])) centre = i;
-    plm_free(sum);
-    if (status != PLM_OK || centre == UINT32_MAX) return status;
-    for (uint32_t i = 0; i < count; i++) w->trunk[i] = plm_graph_length(&s->graph, i, centre) < CORE * s->scale.radius;
+    uint32_t core;
+    const plm_status status = plm_sketch_core(s, &core, error);
+    if (status != PLM_OK || core == UINT32_MAX) return status;
+    for (uint32_t i = 0; i < s->working.count; i++)
+        w->trunk[i] = plm_graph_length(&s->graph, i, core) < CORE * s->scale.radius;
     return PLM_OK;
 }
 

@@ -44,6 +44,9 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
 /** Sets classes right that no plant can have: tubes shorter than they are thick, specks of blade on a tube. */
 plm_status plm_sketch_tidy(plm_sketch *sketch, plm_error *error);
 
+/** Whether most points are called tube and larger balls would find more: folded straps, seen as tubes; or a bare stem. */
+bool plm_leaves_look_like_tubes(const plm_sketch *sketch);
+
 /** Finds the main stem's centre line and marks its points. No stem: the path stays empty. */
 plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
 

@@ -1,6 +1,7 @@
 /* segment/stem_path.c: the main stem: the cheapest way from the base to the highest thick tube, where thick tubes are
  * cheap and blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
 #include "cloud/linear.h"
+#include "segment/core.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
@@ -348,13 +349,17 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     if (status != PLM_OK || !sketch->scale.has_tubes) goto done;
     status = find_candidates(sketch, candidate, error);
     if (status != PLM_OK) goto done;
-    const uint32_t base = extreme_point(sketch, candidate, false);
-    if (base == UINT32_MAX) goto done;
+    uint32_t base = extreme_point(sketch, candidate, false), top = UINT32_MAX;
+    const bool by_posture = plm_leaves_look_like_tubes(sketch);
+    if (by_posture) status = plm_upright_ends(sketch, &base, &top, error);
+    if (status != PLM_OK || base == UINT32_MAX) goto done;
     status = tube_walk(sketch, base, &ways, error);
     if (status != PLM_OK) goto done;
     for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(ways.distance[i]);
-    uint32_t top = extreme_point(sketch, candidate, true);
-    status = thickest_way(sketch, &ways, &top, error);
+    if (!by_posture) {
+        top = extreme_point(sketch, candidate, true);
+        status = thickest_way(sketch, &ways, &top, error);
+    }
     if (status != PLM_OK) goto done;
     if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) goto done;
     size_t length = 0;

@@ -3,6 +3,7 @@
 
 #include "cloud/linear.h"
 #include "io/io.h"
+#include "segment/frame.h"
 #include "segment/segment.h"
 #include "support/scene.h"
 
@@ -123,6 +124,12 @@ static void where_nothing_tells_z_is_up(void **unused)
     plm_cloud cloud;
     plm_frame frame;
     assert_ok(test_scene_make(&s, &cloud, &error));
+    assert_ok(plm_find_up(&cloud, PLM_UP_AUTO, &frame, &error));
+    assert_int_equal(frame.up, PLM_UP_Z);
+    for (size_t i = 0; i < cloud.count; i++) cloud.xyz[i][1] *= 0.3f; /* the petioles run along x: they are no stem */
+    plm_posture posture;
+    assert_ok(plm_find_posture(&cloud, &posture, &error));
+    assert_true(posture.along[0] > 0.7 && posture.along[2] < 0.2);
     assert_ok(plm_find_up(&cloud, PLM_UP_AUTO, &frame, &error));
     assert_int_equal(frame.up, PLM_UP_Z);
     plm_cloud_free(&cloud);
