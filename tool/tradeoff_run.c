@@ -1,4 +1,5 @@
 /* tool/tradeoff_run.c: every setting on every plant, each in a process of its own. */
+#include "cloud/clock.h"
 #include "reports/plant_files.h"
 #include "tool/measure_settings.h"
 #include "tool/tradeoff.h"
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -150,12 +150,6 @@ static double clock_now(const tradeoff_settings *settings)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static uint64_t peak_bytes(void)
-{
-    struct rusage usage;
-    return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
-}
-
 static plm_status options_of(const child_task *task, plm_measure_options *options, plm_error *error)
 {
     measure_settings settings = measure_setting_defaults();
@@ -237,7 +231,7 @@ static plm_status measure(const child_task *task, child_head *head, tradeoff_val
     const double begin = clock_now(task->study->settings);
     status = plm_measure(&loaded.cloud, &options, &measurement, error);
     head->seconds = clock_now(task->study->settings) - begin;
-    head->peak_bytes = peak_bytes();
+    head->peak_bytes = plm_peak_bytes();
     if (status == PLM_OK) {
         head->points = measurement.used_points;
         head->leaf_alpha = typical_alpha(&measurement, error);
