@@ -2,6 +2,7 @@
 #include "io/io.h"
 #include "tool/tradeoff.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -151,6 +152,7 @@ static int do_study(tradeoff *study)
     if (status == PLM_OK) status = tradeoff_make_grid(study, &error);
     if (status == PLM_OK) status = tradeoff_run_all(study, &error);
     if (status == PLM_OK) status = tradeoff_score(study, &error);
+    if (status == PLM_OK && !settings->is_quick) status = tradeoff_score_bootstrap(study, &error);
     if (status == PLM_OK) status = tradeoff_write(study, &is_drawn, &error);
     if (status != PLM_OK) return plm_report_failure(status, &error);
     tell_end(study, is_drawn);
@@ -188,6 +190,7 @@ static int run(int argc, char **argv)
     code = check_usage(&settings, argc);
     if (code != PLM_EXIT_GOOD) return code;
     if (settings.is_quick) settings.repeats = 1;
+    omp_set_num_threads(1); /* threads of this process would not be there in its children; these set their own number */
     plm_error error = {0};
     const plm_status made = plm_folder_make(settings.output, &error);
     if (made != PLM_OK) return plm_report_failure(made, &error);

@@ -121,6 +121,9 @@ plm_status tradeoff_check_lists(const tradeoff_settings *settings, plm_error *er
 /** Chooses the traits, makes the groups and the grid. PLM_E_FORMAT: the truth has none of the traits. */
 plm_status tradeoff_make_grid(tradeoff *study, plm_error *error);
 
+/** Appends a row to the grid; NULL: no memory. */
+tradeoff_setting *tradeoff_add_setting(tradeoff *study, const char *method, plm_error *error);
+
 /** Whether a setting has anything to do with a trait. */
 bool tradeoff_applies(const tradeoff_setting *setting, size_t trait);
 
@@ -157,6 +160,31 @@ size_t tradeoff_group_of(const tradeoff *study, const tradeoff_setting *setting,
 
 /** Makes the rows: errors with intervals, cost, and the front of each trait and kind of labels. */
 plm_status tradeoff_score(tradeoff *study, plm_error *error);
+
+/** Pairs of values and truth of one trait and setting. */
+typedef struct tradeoff_pairs {
+    double *difference,
+        *truth;   /* of angles in degrees over 100, so that the mean of |difference| / |truth| in % is in degrees */
+    double *size; /* of each error, in % or degrees */
+    uint32_t *plant;
+    size_t count;
+    double told; /* sum of the reference's standard errors, as sizes */
+} tradeoff_pairs;
+
+/** Room for all pairs of any trait of a study. The caller's: tradeoff_pairs_free. */
+plm_status tradeoff_pairs_make(const tradeoff *study, tradeoff_pairs *pairs, plm_error *error);
+void tradeoff_pairs_free(tradeoff_pairs *pairs);
+
+/** Gathers the pairs of a trait and setting over all plants; the row has what was counted, with sums for the means of cost. */
+tradeoff_row tradeoff_gather(const tradeoff *study, size_t trait, size_t setting, tradeoff_pairs *pairs);
+
+plm_status tradeoff_add_row(tradeoff *study, const tradeoff_row *row, plm_error *error);
+
+/** Marks the fronts of the rows from first on, which are one trait's: one for each kind of labels. */
+plm_status tradeoff_mark_fronts(tradeoff *study, size_t first, plm_error *error);
+
+/** Adds rows for the number of resamples of `validate`'s bootstrap intervals (tradeoff_bootstrap.c). */
+plm_status tradeoff_score_bootstrap(tradeoff *study, plm_error *error);
 
 /** Writes tradeoff.csv and, for each trait, tradeoff_TRAIT.gp with its SVG and PNG; is_drawn false where there is no gnuplot. */
 plm_status tradeoff_write(const tradeoff *study, bool *is_drawn, plm_error *error);

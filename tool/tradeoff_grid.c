@@ -159,8 +159,7 @@ static plm_status find_budgets(const tradeoff *study, budget_list *list, plm_err
     return PLM_OK;
 }
 
-/* NULL: no memory. */
-static tradeoff_setting *add_setting(tradeoff *study, const char *method, plm_error *error)
+tradeoff_setting *tradeoff_add_setting(tradeoff *study, const char *method, plm_error *error)
 {
     void *grown = plm_realloc(study->setting, study->setting_count + 1, sizeof *study->setting, error);
     if (!grown) return NULL;
@@ -184,7 +183,7 @@ static const char *const own_method[TRADEOFF_LABELS] = {"plantimeter", "plantime
 static plm_status add_budgets(tradeoff *study, const budget_list *list, tradeoff_labels labels, plm_error *error)
 {
     for (size_t k = 0; k < list->count; k++) {
-        tradeoff_setting *made = add_setting(study, own_method[labels], error);
+        tradeoff_setting *made = tradeoff_add_setting(study, own_method[labels], error);
         if (!made) return PLM_E_MEMORY;
         made->labels = labels;
         made->points = list->points[k];
@@ -198,7 +197,7 @@ static plm_status add_efforts(tradeoff *study, tradeoff_labels labels, plm_error
 {
     static const char *const name[] = {"fast", "balanced", "precise"};
     for (int effort = PLM_EFFORT_FAST; effort <= PLM_EFFORT_PRECISE; effort++) {
-        tradeoff_setting *made = add_setting(study, own_method[labels], error);
+        tradeoff_setting *made = tradeoff_add_setting(study, own_method[labels], error);
         if (!made) return PLM_E_MEMORY;
         const plm_measure_options options = {.effort = (plm_effort)effort};
         made->labels = labels;
@@ -217,7 +216,7 @@ static plm_status add_variants(tradeoff *study, const budget_list *list, tradeof
         char text[TRADEOFF_TEXT];
         name_points(points, text);
         for (size_t a = 0; a < COUNT(alphas); a++) {
-            tradeoff_setting *made = add_setting(study, own_method[labels], error);
+            tradeoff_setting *made = tradeoff_add_setting(study, own_method[labels], error);
             if (!made) return PLM_E_MEMORY;
             made->labels = labels;
             made->points = points;
@@ -226,7 +225,7 @@ static plm_status add_variants(tradeoff *study, const budget_list *list, tradeof
             snprintf(made->text, sizeof made->text, "%.24s alpha=fixed*%g", text, alphas[a]);
         }
         for (size_t n = 0; n < COUNT(neighbours) && !study->has_truth; n++) {
-            tradeoff_setting *made = add_setting(study, own_method[labels], error);
+            tradeoff_setting *made = tradeoff_add_setting(study, own_method[labels], error);
             if (!made) return PLM_E_MEMORY;
             made->labels = labels;
             made->points = points;
@@ -253,7 +252,7 @@ static plm_status add_rivals(tradeoff *study, const budget_list *list, plm_error
         const tradeoff_rival *rival = &study->rival[r];
         for (size_t k = 0; k < list->count && is_asked_for(study, rival); k++) {
             char text[TRADEOFF_TEXT];
-            tradeoff_setting *made = add_setting(study, rival->method, error);
+            tradeoff_setting *made = tradeoff_add_setting(study, rival->method, error);
             if (!made) return PLM_E_MEMORY;
             made->labels = TRADEOFF_GIVEN;
             made->points = list->points[k];

@@ -13,14 +13,6 @@ static const double fewest_share = 0.95;
 enum { RESAMPLES = 2000, BOOTSTRAPPED = 3, MAPE = 2 };
 static const double two_sided = 1.96;
 
-/** The pairs of one row, gathered. Room for all pairs of a trait. */
-typedef struct pair_list {
-    double *difference, *truth, *size; /* size: of the error, % or degrees; sorted for the median */
-    uint32_t *plant;
-    size_t count;
-    double told; /* sum of the reference's standard errors, as sizes */
-} pair_list;
-
 static bool is_angle(const plm_trait *trait)
 {
     return trait->unit == PLM_DEGREE;
@@ -56,7 +48,7 @@ static const tradeoff_value *true_value(const tradeoff *study, size_t plant, siz
 }
 
 static void add_pair(const plm_trait *trait, const tradeoff_value *value, const tradeoff_value *truth, size_t plant,
-                     pair_list *pairs)
+                     tradeoff_pairs *pairs)
 {
     const double difference = difference_of(trait, value->value, truth->value);
     const double factor = is_angle(trait) ? plm_unit_factor(PLM_DEGREE) : 100 / fabs(truth->value);
@@ -68,7 +60,7 @@ static void add_pair(const plm_trait *trait, const tradeoff_value *value, const 
 }
 
 /* One plant's part of a row. */
-static void add_plant(const tradeoff *study, size_t plant, size_t trait, tradeoff_row *row, pair_list *pairs)
+static void add_plant(const tradeoff *study, size_t plant, size_t trait, tradeoff_row *row, tradeoff_pairs *pairs)
 {
     const tradeoff_plant *of = &study->plant[plant];
     const tradeoff_setting *setting = &study->setting[row->setting];
@@ -102,7 +94,7 @@ static int by_size(const void *a, const void *b)
 
 /* Mean error with its interval: by BCa bootstrap, plants drawn whole (organs where there are fewer than three plants); of errors against
  * the finest setting, that one's own standard error. */
-static plm_status summarise(const tradeoff *study, pair_list *pairs, tradeoff_row *row, plm_error *error)
+static plm_status summarise(const tradeoff *study, tradeoff_pairs *pairs, tradeoff_row *row, plm_error *error)
 {
     const size_t n = pairs->count;
     row->count = n;
@@ -133,20 +125,31 @@ static plm_status summarise(const tradeoff *study, pair_list *pairs, tradeoff_ro
     return status;
 }
 
-static plm_status add_row(tradeoff *study, size_t trait, size_t setting, pair_list *pairs, plm_error *error)
+tradeoff_row tradeoff_gather(const tradeoff *study, size_t trait, size_t setting, tradeoff_pairs *pairs)
 {
     size_t count;
-    void *grown = plm_realloc(study->row, study->row_count + 1, sizeof *study->row, error);
-    if (!grown) return PLM_E_MEMORY;
-    study->row = grown;
     tradeoff_row row = {.trait = &plm_traits(&count)[trait], .setting = setting};
     pairs->count = 0;
     pairs->told = 0;
     for (size_t p = 0; p < study->plant_count; p++) add_plant(study, p, trait, &row, pairs);
+    return row;
+}
+
+plm_status tradeoff_add_row(tradeoff *study, const tradeoff_row *row, plm_error *error)
+{
+    void *grown = plm_realloc(study->row, study->row_count + 1, sizeof *study->row, error);
+    if (!grown) return PLM_E_MEMORY;
+    study->row = grown;
+    study->row[study->row_count++] = *row;
+    return PLM_OK;
+}
+
+static plm_status score_setting(tradeoff *study, size_t trait, size_t setting, tradeoff_pairs *pairs, plm_error *error)
+{
+    tradeoff_row row = tradeoff_gather(study, trait, setting, pairs);
     if (row.plants == 0) return PLM_OK;
     const plm_status status = summarise(study, pairs, &row, error);
-    study->row[study->row_count++] = row;
-    return status;
+    return status == PLM_OK ? tradeoff_add_row(study, &row, error) : status;
 }
 
 /* ---- Fronts --------------------------------------------------------------------------------------------------------- */
@@ -163,8 +166,7 @@ static void let_take_part(tradeoff *study, size_t first, size_t end)
     }
 }
 
-/* The rows of one trait: a front for each kind of labels. */
-static plm_status mark_fronts(tradeoff *study, size_t first, plm_error *error)
+plm_status tradeoff_mark_fronts(tradeoff *study, size_t first, plm_error *error)
 {
     const size_t n = study->row_count - first;
     double *cost = plm_alloc(n, 2 * sizeof *cost, error);
@@ -187,23 +189,41 @@ static plm_status mark_fronts(tradeoff *study, size_t first, plm_error *error)
     return status;
 }
 
+plm_status tradeoff_pairs_make(const tradeoff *study, tradeoff_pairs *pairs, plm_error *error)
+{
+    size_t most = 1;
+    for (size_t p = 0; p < study->plant_count; p++) most += study->plant[p].truth_count;
+    *pairs = (tradeoff_pairs){0};
+    pairs->difference = plm_alloc(most, 3 * sizeof *pairs->difference, error);
+    pairs->plant = pairs->difference ? plm_alloc(most, sizeof *pairs->plant, error) : NULL;
+    if (!pairs->plant) {
+        tradeoff_pairs_free(pairs);
+        return PLM_E_MEMORY;
+    }
+    pairs->truth = pairs->difference + most;
+    pairs->size = pairs->truth + most;
+    return PLM_OK;
+}
+
+void tradeoff_pairs_free(tradeoff_pairs *pairs)
+{
+    plm_free(pairs->difference);
+    plm_free(pairs->plant);
+    *pairs = (tradeoff_pairs){0};
+}
+
 plm_status tradeoff_score(tradeoff *study, plm_error *error)
 {
-    size_t trait_count, most = 1;
+    size_t trait_count;
     plm_traits(&trait_count);
-    for (size_t p = 0; p < study->plant_count; p++) most += study->plant[p].truth_count;
-    double *number = plm_alloc(most, 3 * sizeof *number, error);
-    uint32_t *plant = number ? plm_alloc(most, sizeof *plant, error) : NULL;
-    plm_status status = plant ? PLM_OK : PLM_E_MEMORY;
-    pair_list pairs = {number, number + most, number + 2 * most, plant, 0, 0};
-    if (!plant) pairs = (pair_list){0};
+    tradeoff_pairs pairs;
+    plm_status status = tradeoff_pairs_make(study, &pairs, error);
     for (size_t t = 0; t < trait_count && status == PLM_OK; t++) {
         const size_t first = study->row_count;
         for (size_t s = 0; s < study->setting_count && study->is_wanted[t] && status == PLM_OK; s++)
-            if (tradeoff_applies(&study->setting[s], t)) status = add_row(study, t, s, &pairs, error);
-        if (status == PLM_OK) status = mark_fronts(study, first, error);
+            if (tradeoff_applies(&study->setting[s], t)) status = score_setting(study, t, s, &pairs, error);
+        if (status == PLM_OK) status = tradeoff_mark_fronts(study, first, error);
     }
-    plm_free(number);
-    plm_free(plant);
+    tradeoff_pairs_free(&pairs);
     return status;
 }
