@@ -37,7 +37,7 @@ static int bootstrap_in_child(void *user, int fd)
 {
     const interval_task *task = user;
     interval_result result = {0};
-    double seconds[SEEDS];
+    double seconds[SEEDS] = {0};
     for (size_t k = 0; k < task->seeds; k++) {
         plm_statistic boot[STATISTICS] = {{.value = NAN}, {.value = NAN}, {.value = 1}};
         const tradeoff_pairs *pairs = task->pairs;
