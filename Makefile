@@ -1,6 +1,6 @@
 # Plantimeter: one word a job. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help packages build demo test reduced asan fuzz bench docs format tidy clean
+.PHONY: help packages build demo test reduced asan fuzz floating bench docs format tidy clean
 JOBS ?= $(shell nproc)
 # Goals that `make bench` measures: BENCH=all, BENCH=P1,P9, or BENCH=accuracy (errors of the traits); BENCH_CSV=FILE appends the rows to a file.
 BENCH ?= P1,P9,P10,P12
@@ -35,6 +35,9 @@ fuzz: packages ## run each fuzz target for FUZZ_SECONDS
 	@cmake --preset fuzz >/dev/null
 	@cmake --build build/fuzz -j $(JOBS) --target fuzzers
 	@sh tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
+
+floating: build ## check that digits do not depend on compiler, optimisation, FMA or threads, and that no exception is raised
+	@sh tests/house/floating.sh $(CURDIR) build/release/plantimeter
 
 bench: build ## measure speed against PCL, FLANN, CGAL and qhull, as ratios
 	@sh bench/run.sh build/release/bench $(BENCH) $(BENCH_CSV)

@@ -44,11 +44,11 @@ static plm_status read_row(const plm_table *table, size_t at, const size_t colum
     *row = (plm_result_row){.trait = plm_trait_find(cell[TRAIT])};
     if (!row->trait) return broken_row(table, at, path, "an unknown trait", error);
     const double organ = number_or_nan(cell[ORGAN]), points = number_or_nan(cell[POINTS]);
-    row->organ_id = organ >= 0 && organ <= INT32_MAX ? (int32_t)organ : -1;
+    row->organ_id = isgreaterequal(organ, 0) && organ <= INT32_MAX ? (int32_t)organ : -1;
     for (int axis = 0; axis < 3; axis++) row->position[axis] = number_or_nan(cell[X + axis]);
     row->value = number_or_nan(cell[VALUE]);
     row->std_error = number_or_nan(cell[ERROR]);
-    row->point_count = points >= 0 && points < 1e15 ? (size_t)points : 0;
+    row->point_count = isgreaterequal(points, 0) && points < 1e15 ? (size_t)points : 0;
     return plm_result_row_texts(row, cell[STATUS], cell[REASON], cell[METHOD], error);
 }
 

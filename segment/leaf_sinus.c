@@ -126,7 +126,7 @@ double plm_leaf_sinus(const plm_leaf_way *way, double origin[3], double along[3]
     double n = 0, at = 0, value = 0, square = 0, product = 0, squares = 0, first = INFINITY;
     int closed = 0;
     for (int b = 0; b < BINS && closed < 2; b++) {
-        if (!(gap[b] > 0)) continue;
+        if (!isgreater(gap[b], 0)) continue; /* NAN where there is none: a quiet comparison */
         if (gap[b] < CLEAR * slender) {
             closed++;
             continue;
