@@ -28,15 +28,17 @@ typedef struct problem {
     int basis;      /* coefficients of u, and of v */
     int size;       /* parameters */
     double *foot;   /* t of each point */
+    double *
+        known; /* the feet from which those of a trial are found: of the last accepted axis, so that a trial's cost does
+                       not depend on the trials before it where a point has two feet */
     double *residual, *scratch;
     double limit; /* residuals beyond count as a constant cost: the point is left out */
 } problem;
 
 typedef struct fit {
     double x[PLM_TUBE_PARAMETERS];
-    double cost, scale;
+    double scale;
     int steps;
-    bool converged;
     plm_fit_end end;
 } fit;
 
@@ -64,13 +66,13 @@ static double radius_at(const problem *p, const double x[], double t)
     return x[2 * p->basis] + (p->size > 2 * p->basis + 1 ? x[2 * p->basis + 1] * t : 0);
 }
 
-/* Residuals at x; feet are moved along. */
+/* Residuals and feet at x. */
 static void evaluate(problem *p, const double x[])
 {
     set_axis(p, x);
     for (size_t i = 0; i < p->count; i++) {
         double at[3], first[3], second[3], gap[3];
-        p->foot[i] = refine_foot(&p->axis, p->xyz[i], p->foot[i], at, first, second, gap);
+        p->foot[i] = refine_foot(&p->axis, p->xyz[i], p->known[i], at, first, second, gap);
         p->residual[i] = plm_norm(gap) - radius_at(p, x, p->foot[i]);
     }
 }
@@ -107,8 +109,8 @@ static int derivatives(const problem *p, const double x[], size_t i, int column[
     return used;
 }
 
-/* Normal matrix and gradient of the residuals within limit; their weights are 1 / sqrt(1 + (residual / scale)^2), or 1
- * for scale 0. */
+/* Normal matrix and gradient of the residuals within limit, by the loss' first and second derivative at the scale: weights
+ * q and q^3 with q = 1 / sqrt(1 + (residual / scale)^2); or 1 for scale 0. */
 static void accumulate(const problem *p, const double x[], double scale, double limit, double *matrix, double *gradient)
 {
     const int n = p->size;
@@ -117,13 +119,13 @@ static void accumulate(const problem *p, const double x[], double scale, double 
     for (size_t i = 0; i < p->count; i++) {
         const double r = p->residual[i];
         if (!(fabs(r) <= limit)) continue;
-        const double weight = scale > 0 ? 1 / sqrt(1 + (r / scale) * (r / scale)) : 1;
+        const double weight = scale > 0 ? 1 / sqrt(1 + (r / scale) * (r / scale)) : 1, bend = weight * weight * weight;
         int column[2 * 4 + 2];
         double value[2 * 4 + 2];
         const int used = derivatives(p, x, i, column, value);
         for (int a = 0; a < used; a++) {
             gradient[column[a]] += weight * value[a] * r;
-            for (int b = 0; b <= a; b++) matrix[column[a] * n + column[b]] += weight * value[a] * value[b];
+            for (int b = 0; b <= a; b++) matrix[column[a] * n + column[b]] += bend * value[a] * value[b];
         }
     }
     for (int a = 0; a < n; a++)
@@ -140,48 +142,38 @@ static double cost_of(const problem *p, double scale)
     return sum * scale * scale;
 }
 
-/* Levenberg-Marquardt at a fixed scale. Feet and residuals are those of f->x before and after. */
-static void descend(problem *p, fit *f, double tolerance, double *matrix, double *damped)
+/* What the descent moves: the cost at the scale of the round. */
+typedef struct descent {
+    problem *p;
+    double scale;
+} descent;
+
+static double move_to(void *context, const double *x)
 {
-    const int n = p->size;
-    double gradient[PLM_TUBE_PARAMETERS] = {0}, step[PLM_TUBE_PARAMETERS], tried[PLM_TUBE_PARAMETERS];
-    double damping = 1e-3, column_scale[PLM_TUBE_PARAMETERS] = {0};
-    f->cost = cost_of(p, f->scale);
-    f->converged = false;
-    f->end = PLM_FIT_STEPS_SPENT;
-    bool moved = true;
-    for (int k = 0; k < STEPS && !f->converged; k++, f->steps++) {
-        if (moved) accumulate(p, f->x, f->scale, p->limit, matrix, gradient);
-        memcpy(damped, matrix, (size_t)(n * n) * sizeof *matrix);
-        for (int a = 0; a < n; a++) {
-            column_scale[a] = fmax(column_scale[a], matrix[a * n + a]); /* More's scaling only grows */
-            damped[a * n + a] += damping * column_scale[a] + 1e-300;
-            step[a] = -gradient[a];
-        }
-        moved = plm_solve_spd(n, damped, step);
-        double largest = 0;
-        for (int a = 0; a < n; a++) {
-            tried[a] = f->x[a] + step[a];
-            largest = fmax(largest, fabs(step[a]));
-        }
-        if (moved) {
-            evaluate(p, tried);
-            const double cost = cost_of(p, f->scale);
-            moved = cost <= f->cost;
-            f->converged = largest < tolerance * fabs(f->x[2 * p->basis]) + 1e-15;
-            if (moved) {
-                memcpy(f->x, tried, (size_t)n * sizeof *tried);
-                f->cost = cost;
-            }
-        }
-        damping = moved ? fmax(damping * 0.1, 1e-12) : damping * 8;
-        if (damping > 1e12 && !f->converged) {
-            f->end = PLM_FIT_NO_DESCENT;
-            break;
-        }
-    }
-    if (f->converged) f->end = PLM_FIT_SMALL_STEP;
-    evaluate(p, f->x);
+    const descent *d = context;
+    evaluate(d->p, x);
+    return cost_of(d->p, d->scale);
+}
+
+static void normal_at(void *context, const double *x, double *matrix, double *gradient)
+{
+    const descent *d = context;
+    memcpy(d->p->known, d->p->foot, d->p->count * sizeof *d->p->foot);
+    accumulate(d->p, x, d->scale, d->p->limit, matrix, gradient);
+}
+
+/* Descent at a fixed scale. Feet and residuals are those of f->x before and after. */
+static void descend(problem *p, fit *f, double tolerance, double *work)
+{
+    double typical[PLM_TUBE_PARAMETERS];
+    for (int a = 0; a < p->size; a++) typical[a] = fabs(f->x[2 * p->basis]) + 1e-15;
+    descent context = {p, f->scale};
+    const plm_least_squares squares = {
+        .size = p->size, .context = &context, .move = move_to, .normal = normal_at, .typical = typical};
+    plm_fit_report report;
+    plm_trust_region(&squares, f->x, tolerance, STEPS, work, &report);
+    f->steps += report.iteration_count;
+    f->end = report.end;
 }
 
 static double robust_sd(const problem *p)
@@ -196,13 +188,13 @@ static void evaluate_afresh(problem *p, const double x[])
     for (size_t i = 0; i < p->count; i++) {
         double from_middle[3];
         for (int k = 0; k < 3; k++) from_middle[k] = p->xyz[i][k] - p->axis.origin[k];
-        p->foot[i] = plm_dot(from_middle, p->axis.along) / p->axis.half;
+        p->known[i] = plm_dot(from_middle, p->axis.along) / p->axis.half;
     }
     evaluate(p, x);
 }
 
 /* Rounds of descent from the start in f->x. */
-static void solve(problem *p, fit *f, double *matrix, double *damped)
+static void solve(problem *p, fit *f, double *work)
 {
     evaluate_afresh(p, f->x);
     for (int round = 0; round < ROUNDS; round++) {
@@ -210,7 +202,7 @@ static void solve(problem *p, fit *f, double *matrix, double *damped)
         f->scale = loss_scale * sd;
         const double limit = fmax(trimmed * sd, misfit * fabs(f->x[2 * p->basis]));
         p->limit = round < FIRST_TRIMMED ? INFINITY : limit;
-        descend(p, f, round < ROUNDS - 1 ? settled : converged, matrix, damped);
+        descend(p, f, round < ROUNDS - 1 ? settled : converged, work);
     }
 }
 
@@ -260,33 +252,6 @@ static bool start_at_circle(const problem *p, const plm_curve *start, const fit 
     return true;
 }
 
-/* Inverse of the symmetric positive definite matrix, and the condition of the matrix with unit diagonal, as the ratio
- * of the extreme diagonals of its Cholesky factor. 0 where it is singular. */
-static int invert(int n, const double *matrix, double *work, double out[PLM_TUBE_PARAMETERS][PLM_TUBE_PARAMETERS],
-                  double *condition)
-{
-    double scale[PLM_TUBE_PARAMETERS];
-    for (int a = 0; a < n; a++) {
-        if (!(matrix[a * n + a] > 0)) return 0;
-        scale[a] = 1 / sqrt(matrix[a * n + a]);
-    }
-    for (int column = 0; column < n; column++) {
-        double right[PLM_TUBE_PARAMETERS] = {0};
-        for (int a = 0; a < n; a++)
-            for (int b = 0; b < n; b++) work[a * n + b] = matrix[a * n + b] * scale[a] * scale[b];
-        right[column] = 1;
-        if (!plm_solve_spd(n, work, right)) return 0;
-        for (int a = 0; a < n; a++) out[a][column] = right[a] * scale[a] * scale[column];
-    }
-    double low = work[0], high = work[0];
-    for (int a = 1; a < n; a++) {
-        low = fmin(low, work[a * n + a]);
-        high = fmax(high, work[a * n + a]);
-    }
-    *condition = high / low;
-    return 1;
-}
-
 /* Share of the directions around the axis in which inlying points lie. */
 static double coverage_of(const problem *p, double limit)
 {
@@ -307,12 +272,12 @@ static double coverage_of(const problem *p, double limit)
 }
 
 /* Writes the result of the better fit, whose residuals and feet are in p. false where its matrix is singular. */
-static bool conclude(problem *p, const fit *best, double *matrix, double *work, plm_tube *tube)
+static bool conclude(problem *p, const fit *best, double *matrix, double *inverse, double *work, plm_tube *tube)
 {
     const int n = p->size;
     plm_tube out = {.axis = p->axis,
                     .iteration_count = best->steps,
-                    .converged = best->converged,
+                    .converged = best->end == PLM_FIT_SMALL_STEP || best->end == PLM_FIT_SMALL_GAIN,
                     .end = best->end,
                     .parameter_count = n};
     out.radius[0] = best->x[2 * p->basis];
@@ -329,9 +294,10 @@ static bool conclude(problem *p, const fit *best, double *matrix, double *work, 
     out.spread = sqrt(squares / (double)(out.inlier_count - (size_t)n));
     out.coverage = coverage_of(p, limit);
     accumulate(p, best->x, 0, limit, matrix, gradient);
-    if (!invert(n, matrix, work, out.covariance, &out.condition)) return false;
+    out.condition = plm_normal_condition(n, matrix, inverse, work);
+    if (!isfinite(out.condition)) return false;
     for (int a = 0; a < n; a++)
-        for (int b = 0; b < n; b++) out.covariance[a][b] *= out.spread * out.spread;
+        for (int b = 0; b < n; b++) out.covariance[a][b] = inverse[a * n + b] * out.spread * out.spread;
     if (!(out.radius[0] > 0) || !isfinite(out.radius[0] + out.radius[1])) return false;
     *tube = out;
     return true;
@@ -345,24 +311,23 @@ plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *s
         return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for a tube of %d parameters; %d are needed",
                         count, size, 2 * size);
     problem p = {.xyz = xyz, .count = count, .axis = *start, .basis = basis, .size = size};
-    double *vectors = plm_alloc(3 * count, sizeof *vectors, error);
-    double *matrix = plm_alloc(2 * (size_t)(size * size), sizeof *matrix, error);
+    double *vectors = plm_alloc(4 * count, sizeof *vectors, error);
+    double *matrix = plm_alloc(3 * (size_t)(size * size), sizeof *matrix, error);
     plm_status status = vectors && matrix ? PLM_OK : PLM_E_MEMORY;
     if (status == PLM_OK) {
-        double *work = matrix + size * size;
-        p.foot = vectors, p.residual = vectors + count, p.scratch = vectors + 2 * count;
+        p.foot = vectors, p.known = vectors + count, p.residual = vectors + 2 * count, p.scratch = vectors + 3 * count;
         fit at_axis, at_circle;
         start_at_axis(&p, start, &at_axis);
         const bool two = start_at_circle(&p, start, &at_axis, &at_circle);
-        solve(&p, &at_axis, matrix, work);
+        solve(&p, &at_axis, matrix);
         fit *best = &at_axis;
         if (two) {
-            solve(&p, &at_circle, matrix, work);
+            solve(&p, &at_circle, matrix);
             /* Costs at their own scales do not compare; the robust scales do. */
             if (at_circle.x[2 * basis] > 0 && at_circle.scale < at_axis.scale * (1 - 1e-6)) best = &at_circle;
         }
         evaluate_afresh(&p, best->x);
-        if (!conclude(&p, best, matrix, work, tube))
+        if (!conclude(&p, best, matrix, matrix + size * size, matrix + 2 * size * size, tube))
             status = plm_fail(error, PLM_E_DEGENERATE, "the %zu points determine no tube", count);
     }
     plm_free(vectors);

@@ -3,16 +3,10 @@
 #define PLANTIMETER_TRAITS_TUBE_FIT_H
 
 #include "cloud/cloud.h"
+#include "cloud/trust_region.h"
 #include "traits/axis_curve.h"
 
 enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 2, PLM_TUBE_SECTORS = 24 };
-
-/** Why a fit ended. */
-typedef enum plm_fit_end {
-    PLM_FIT_STEPS_SPENT = 0, /**< the most steps were taken: not converged */
-    PLM_FIT_SMALL_STEP,      /**< the last step was below 1e-9 of the radius: converged */
-    PLM_FIT_NO_DESCENT /**< no step, however short, lowered the cost: at the rounding of the residuals, or stuck */
-} plm_fit_end;
 
 /** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the two of the radius. */
 typedef struct plm_tube {
@@ -21,8 +15,10 @@ typedef struct plm_tube {
     double robust_sd; /**< robust SD of the residuals, all points */
     double spread;    /**< SD of the inlying residuals (within 3 robust SD) */
     size_t inlier_count;
-    double coverage;  /**< share of the directions around the axis in which inlying points lie */
-    double condition; /**< of the fit: large where short arcs leave radius and axis undetermined */
+    double coverage; /**< share of the directions around the axis in which inlying points lie */
+    double
+        condition; /**< of the normal matrix with unit diagonal (1-norm): large where short arcs leave radius and axis
+                           undetermined */
     int iteration_count;
     bool converged;
     plm_fit_end end; /**< of the last round */
@@ -34,8 +30,7 @@ typedef struct plm_tube {
  *
  * Residual: distance to the axis, at right angles to its local tangent, minus the radius there. Minimised: the sum of
  * soft-L1 losses 2 f^2 (sqrt(1 + (residual / f)^2) - 1) with f = 1.5 robust SD, found again in three rounds, by
- * Levenberg-Marquardt steps with analytic derivatives and column scaling (J. J. More, The Levenberg-Marquardt algorithm,
- * 1978); from two starts (the given axis, and an algebraic circle about it), of which the better is kept.
+ * the scaled trust region of cloud/trust_region.h with analytic derivatives; from two starts (the given axis, and an algebraic circle about it), of which the better is kept.
  * taper: whether the radius may change along the axis.
  * PLM_E_DEGENERATE  fewer points than twice the parameters, or points that determine no tube. */
 plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
