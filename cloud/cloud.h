@@ -36,6 +36,7 @@ typedef enum plm_status {
     PLM_E_WRITE,      /**< a file cannot be written */
     PLM_E_DEGENERATE, /**< the points do not determine what was asked for (too few, collinear, no surface, ...) */
     PLM_E_LIBRARY,    /**< a library underneath failed; the message carries its text */
+    PLM_E_TIME,       /**< given up: a deadline passed */
 } plm_status;
 
 enum { PLM_ERROR_LENGTH = 512 };
@@ -52,6 +53,22 @@ PLM_API plm_status plm_fail(plm_error *error, plm_status status, const char *for
 
 /** The status's name in words ("bad argument", "out of memory", ...). Static storage. */
 PLM_API const char *plm_status_name(plm_status status);
+
+/* ---- Time ------------------------------------------------------------------------------------------------------ */
+
+/** A moment by which work should have ended. Work in several steps asks between them, and is given up with PLM_E_TIME. */
+typedef struct plm_deadline {
+    double at;                   /**< seconds on the clock */
+    double (*clock)(void *user); /**< NULL: the machine's steady clock, CLOCK_MONOTONIC */
+    void *user;
+} plm_deadline;
+
+/** The time on the deadline's clock; deadline may be NULL. */
+PLM_API double plm_deadline_now(const plm_deadline *deadline);
+/** Whether it passed; never where deadline is NULL. */
+PLM_API bool plm_deadline_passed(const plm_deadline *deadline);
+/** PLM_OK, or PLM_E_TIME where it passed. */
+PLM_API plm_status plm_deadline_check(const plm_deadline *deadline, plm_error *error);
 
 /* ---- Memory: the one seam through which the library allocates ------------------------------------------------ */
 

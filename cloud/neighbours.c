@@ -150,30 +150,52 @@ static float point_distance(const float a[3], const float b[3])
     return x * x + y * y + z * z;
 }
 
-/** The best found so far, sorted by (distance, row). */
+/** The best found so far, sorted by (distance, row): a key holds the bits of the squared distance, which order as the numbers do
+ * where those are not negative, above the row. */
 typedef struct best_list {
     size_t count, room;
-    uint32_t row[PLM_MOST_NEIGHBOURS];
-    float squared[PLM_MOST_NEIGHBOURS];
+    uint64_t key[PLM_MOST_NEIGHBOURS];
 } best_list;
 
-static void best_insert(best_list *best, uint32_t row, float squared)
+static uint64_t key_of(float squared, uint32_t row)
+{
+    uint32_t bits;
+    memcpy(&bits, &squared, sizeof bits);
+    return (uint64_t)bits << 32 | row;
+}
+
+static float squared_of(uint64_t key)
+{
+    const uint32_t bits = (uint32_t)(key >> 32);
+    float squared;
+    memcpy(&squared, &bits, sizeof squared);
+    return squared;
+}
+
+static void best_insert(best_list *best, uint64_t key)
 {
     size_t i = best->count;
     if (i == best->room) {
-        const float worst = best->squared[i - 1];
-        if (squared > worst || (squared == worst && row > best->row[i - 1])) return;
+        if (key >= best->key[i - 1]) return;
         i--;
     } else {
         best->count++;
     }
-    while (i > 0 && (best->squared[i - 1] > squared || (best->squared[i - 1] == squared && best->row[i - 1] > row))) {
-        best->squared[i] = best->squared[i - 1];
-        best->row[i] = best->row[i - 1];
-        i--;
+    if (i > FEW_HITS) { /* halving, then moving as one block */
+        size_t low = 0, high = i;
+        while (low < high) {
+            const size_t middle = (low + high) / 2;
+            if (best->key[middle] > key)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        memmove(&best->key[low + 1], &best->key[low], (i - low) * sizeof *best->key);
+        i = low;
+    } else {
+        for (; i > 0 && best->key[i - 1] > key; i--) best->key[i] = best->key[i - 1];
     }
-    best->squared[i] = squared;
-    best->row[i] = row;
+    best->key[i] = key;
 }
 
 static void search_nearest(const plm_index *index, const float q[3], uint32_t skip, best_list *best)
@@ -192,13 +214,11 @@ static void search_nearest(const plm_index *index, const float q[3], uint32_t sk
         const uint32_t self = stack[depth].node;
         const tree_node *node = &index->node[self];
         if (best->count == best->room) {
-            const float farthest = best->squared[best->count - 1];
-            if (stack[depth].distance > farthest) continue;
-            if (stack[depth].distance == farthest && node->least_row > best->row[best->count - 1]) continue;
+            if (key_of(stack[depth].distance, node->least_row) > best->key[best->count - 1]) continue;
         }
         if (!node->right) {
             for (uint32_t i = node->begin; i < node->end; i++)
-                if (index->row[i] != skip) best_insert(best, index->row[i], point_distance(index->point[i], q));
+                if (index->row[i] != skip) best_insert(best, key_of(point_distance(index->point[i], q), index->row[i]));
             continue;
         }
         const float left = box_distance(&index->node[self + 1], q);
@@ -214,8 +234,8 @@ static void search_nearest(const plm_index *index, const float q[3], uint32_t sk
 static void best_write(const best_list *best, size_t k, uint32_t *row, float *squared)
 {
     for (size_t i = 0; i < k; i++) {
-        if (row) row[i] = i < best->count ? best->row[i] : PLM_NO_ROW;
-        if (squared) squared[i] = i < best->count ? best->squared[i] : INFINITY;
+        if (row) row[i] = i < best->count ? (uint32_t)best->key[i] : PLM_NO_ROW;
+        if (squared) squared[i] = i < best->count ? squared_of(best->key[i]) : INFINITY;
     }
 }
 

@@ -25,6 +25,7 @@ const char *plm_status_name(plm_status status)
         [PLM_E_WRITE] = "cannot write",
         [PLM_E_DEGENERATE] = "not determined by the points",
         [PLM_E_LIBRARY] = "a library failed",
+        [PLM_E_TIME] = "no time left",
     };
     return (size_t)status < sizeof names / sizeof *names ? names[status] : "unknown status";
 }

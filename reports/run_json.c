@@ -96,13 +96,15 @@ static json_t *organs_json(const plm_segmentation *segmentation)
     return finish(&b);
 }
 
-static json_t *stage_json(const char *name, bool runs, const char *why, double seconds, uint64_t peak_bytes)
+static json_t *stage_json(const char *name, bool runs, const char *why, double seconds, double processor_seconds,
+                          uint64_t peak_bytes)
 {
     builder b = begin_object();
     set(&b, "stage", json_string(name));
     set(&b, "runs", json_boolean(runs));
     if (*why) set(&b, "why", json_string(why));
     set(&b, "seconds", number(seconds));
+    if (processor_seconds > 0) set(&b, "processor_seconds", number(processor_seconds));
     if (peak_bytes) set(&b, "peak_bytes", json_integer((json_int_t)peak_bytes));
     return finish(&b);
 }
@@ -111,13 +113,15 @@ static json_t *plan_json(const plm_run_plant *plant)
 {
     json_t *stages = json_array();
     bool is_broken = false;
-    append(stages, &is_broken, stage_json("read", true, "", plant->read_seconds, plant->read_peak_bytes));
+    append(stages, &is_broken, stage_json("read", true, "", plant->read_seconds, 0, plant->read_peak_bytes));
     const plm_measurement *measurement = plant->report->measurement;
     for (size_t i = 0; measurement && i < measurement->plan.stage_count; i++) {
         const plm_stage *stage = &measurement->plan.stage[i];
-        append(stages, &is_broken, stage_json(stage->name, stage->runs, stage->why, stage->seconds, stage->peak_bytes));
+        append(stages, &is_broken,
+               stage_json(stage->name, stage->runs, stage->why, stage->seconds, stage->processor_seconds,
+                          stage->peak_bytes));
     }
-    append(stages, &is_broken, stage_json("write", true, "", plant->write_seconds, plant->write_peak_bytes));
+    append(stages, &is_broken, stage_json("write", true, "", plant->write_seconds, 0, plant->write_peak_bytes));
     return finish_array(stages, is_broken);
 }
 
@@ -166,6 +170,74 @@ static json_t *place_json(const plm_georeference *place)
     return finish(&b);
 }
 
+/* ---- Time and targets ------------------------------------------------------------------------------------------ */
+
+static const char *group_text(const bool has_group[PLM_GROUP_COUNT])
+{
+    if (has_group[PLM_GROUP_PLANT] && has_group[PLM_GROUP_ORGANS]) return "plant and organs";
+    return has_group[PLM_GROUP_PLANT] ? "plant" : has_group[PLM_GROUP_ORGANS] ? "organs" : "none";
+}
+
+static json_t *pass_json(const plm_pass_record *pass)
+{
+    builder b = begin_object();
+    set(&b, "points", json_integer((json_int_t)pass->points));
+    set(&b, "traits_of", json_string(group_text(pass->has_group)));
+    set(&b, "complete", json_string(group_text(pass->is_complete)));
+    set(&b, "predicted_s", number(pass->predicted));
+    set(&b, "seconds", number(pass->seconds));
+    return finish(&b);
+}
+
+static json_t *target_json(const plm_target *target, const plm_target_outcome *outcome)
+{
+    const double factor = target->is_relative ? 100 : plm_unit_factor(target->trait->unit);
+    builder b = begin_object();
+    set(&b, "trait", json_string(target->trait->name));
+    set(&b, "unit", json_string(target->is_relative ? "%" : plm_unit_name(target->trait->unit)));
+    set(&b, "asked", number(factor * target->half_width));
+    set(&b, "half_width_95", outcome ? number(factor * outcome->half_width) : json_null());
+    set(&b, "reached", json_boolean(outcome && outcome->is_reached));
+    if (outcome && target->trait->level != PLM_PLANT) {
+        set(&b, "worst_organ", number(factor * outcome->worst));
+        set(&b, "organs", json_integer((json_int_t)outcome->organs));
+        set(&b, "organs_within", json_integer((json_int_t)outcome->organs_within));
+    }
+    return finish(&b);
+}
+
+static json_t *targets_json(const plm_run_time *time)
+{
+    json_t *array = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < time->target_count; i++)
+        append(array, &is_broken, target_json(&time->target[i], time->record ? &time->record->outcome[i] : NULL));
+    return finish_array(array, is_broken);
+}
+
+/* Of the points that a group's values rest on; null where there are none. */
+static json_t *points_json(const plm_anytime_record *record, plm_group group)
+{
+    return record && record->points[group] ? json_integer((json_int_t)record->points[group]) : json_null();
+}
+
+static json_t *time_json(const plm_run_time *time)
+{
+    json_t *passes = json_array(), *left_out = json_array();
+    bool is_broken = false, is_list_broken = false;
+    for (size_t i = 0; time->record && i < time->record->pass_count; i++)
+        append(passes, &is_broken, pass_json(&time->record->pass[i]));
+    for (size_t i = 0; i < time->left_out_count; i++) append(left_out, &is_list_broken, json_string(time->left_out[i]));
+    builder b = begin_object();
+    set(&b, "asked_s", time->asked > 0 ? number(time->asked) : json_null());
+    set(&b, "used_s", number(time->used));
+    set(&b, "points_of_plant_traits", points_json(time->record, PLM_GROUP_PLANT));
+    set(&b, "points_of_organ_traits", points_json(time->record, PLM_GROUP_ORGANS));
+    set(&b, "passes", finish_array(passes, is_broken));
+    set(&b, "left_out", finish_array(left_out, is_list_broken));
+    return finish(&b);
+}
+
 plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_error *error)
 {
     plm_json_use_seam();
@@ -192,6 +264,8 @@ plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_e
         set(&b, "ground", ground_json(&measurement->ground));
         set(&b, "organs", organs_json(&measurement->segmentation));
     }
+    if (plant->time) set(&b, "time_budget", time_json(plant->time));
+    if (plant->time && plant->time->target_count) set(&b, "target_error", targets_json(plant->time));
     set(&b, "plan", plan_json(plant));
     set(&b, "warnings", warnings_json(plant));
     set(&b, "files", files_json(plant));

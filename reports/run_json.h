@@ -5,6 +5,17 @@
 
 #include "io/json_file.h"
 #include "reports/results.h"
+#include "traits/anytime.h"
+
+/** How a plant's time was used, where it was limited or an error was to be reached. */
+typedef struct plm_run_time {
+    double asked, used; /**< seconds; asked 0: no limit */
+    size_t target_count;
+    const plm_target *target;
+    const plm_anytime_record *record; /**< NULL where nothing was measured */
+    size_t left_out_count;
+    const char *left_out[8]; /**< outputs that the time did not allow */
+} plm_run_time;
 
 /** What is known of one plant's run beside its measurement. Strings are the caller's. */
 typedef struct plm_run_plant {
@@ -15,6 +26,7 @@ typedef struct plm_run_plant {
     size_t point_count;
     double metres_per_unit;
     const char *unit_evidence; /**< "given", "guessed: ...", ... */
+    const plm_run_time *time;  /**< NULL: any time, no target */
     double read_seconds, write_seconds;
     uint64_t read_peak_bytes, write_peak_bytes;
     size_t warning_count;

@@ -97,6 +97,7 @@ typedef struct plm_segment_options {
     plm_habit habit;     /**< PLM_HABIT_UNKNOWN: guessed, and said */
     size_t point_budget; /**< structure is found on about so many points and carried to all; 0: default */
     uint64_t seed;
+    const plm_deadline *deadline; /**< asked between the steps; NULL: none */
 } plm_segment_options;
 
 /** Labels and organ numbers of all points of a cloud. */
@@ -118,7 +119,7 @@ typedef struct plm_segmentation {
 
 /** Labels stem, petioles and leaves of a plant, z up. label and keep are as plm_find_ground and plm_clean gave them
  * (either may be NULL). Ground stays ground, noise becomes other. The result is the caller's (plm_segmentation_free).
- * PLM_E_DEGENERATE: too few points for any structure. */
+ * PLM_E_DEGENERATE: too few points for any structure. PLM_E_TIME: the deadline passed. */
 PLM_API plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
                                const plm_segment_options *options, plm_segmentation *result, plm_error *error);
 

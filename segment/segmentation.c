@@ -118,9 +118,12 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
         goto done;
     }
     status = plm_sketch_make((const float(*)[3])xyz, count, options->point_budget, &sketch, error);
+    if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(&sketch, error);
     if (status == PLM_OK && may_have_stem(options->habit)) status = plm_sketch_stem(&sketch, error);
+    if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch.stem.count > 0) status = plm_sketch_stem_end(&sketch, error);
+    if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_leaves(&sketch, options->habit, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
     if (status != PLM_OK) goto done;

@@ -27,8 +27,16 @@ typedef enum plm_option_kind {
     PLM_OPTION_INTEGER,  /**< int from minimum to maximum */
     PLM_OPTION_SEED,     /**< uint64_t */
     PLM_OPTION_LENGTH,   /**< double, metres: a number with the suffix m, cm or mm (none: m), from minimum to maximum */
+    PLM_OPTION_DURATION, /**< double, seconds: a number with the suffix ms, s or min (none: s), above 0 */
+    PLM_OPTION_TEXTS,    /**< plm_texts: as PLM_OPTION_TEXT, but the option may come several times */
     PLM_OPTION_CHOICE    /**< int: place of the value among the words of `argument`, which are separated by | */
 } plm_option_kind;
+
+/** The values of an option that may come several times: into argv. */
+typedef struct plm_texts {
+    int count;
+    const char *text[8];
+} plm_texts;
 
 /** One option of a command. */
 typedef struct plm_option {
@@ -78,6 +86,9 @@ plm_status plm_options_json(const plm_command *command, void *settings, json_t *
 
 /** Reads a length as an option does: "20mm", "2 cm", "0.02". PLM_E_ARGUMENT says what was expected. */
 plm_status plm_parse_length(const char *text, double *metres, plm_error *error);
+
+/** Reads a time as an option does: "500ms", "2 s", "1.5min". PLM_E_ARGUMENT says what was expected. */
+plm_status plm_parse_duration(const char *text, double *seconds, plm_error *error);
 
 /** Reads a number, all of text. */
 bool plm_parse_number(const char *text, double *number);

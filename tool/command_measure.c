@@ -1,4 +1,5 @@
 /* tool/command_measure.c: the `measure` sub-command. Options in, a library call a plant, tables out; no geometry. */
+#include "cloud/clock.h"
 #include "reports/report.h"
 #include "reports/run_json.h"
 #include "tool/measure_settings.h"
@@ -9,6 +10,7 @@
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 static const plm_option options[] = {
     {.letter = 'o',
@@ -74,6 +76,19 @@ static const plm_option options[] = {
      .offset = offsetof(measure_settings, points),
      .minimum = 1000,
      .maximum = 1000000000},
+    {.name = "time-budget",
+     .argument = "TIME",
+     .help = "use at most this time a plant, reading and writing included, where it lowers the reported errors most; "
+             "e.g. 500ms, 2s, 1.5min. What does not fit is left out, and said",
+     .kind = PLM_OPTION_DURATION,
+     .offset = offsetof(measure_settings, time_budget)},
+    {.name = "target-error",
+     .argument = "TRAIT=ERROR",
+     .help = "look at as few points as bring half the width of the trait's 95 % interval (of organs: the median "
+             "organ's) to ERROR, e.g. leaf_area=2% or plant_height=1mm; may come several times, or as a list with "
+             "commas",
+     .kind = PLM_OPTION_TEXTS,
+     .offset = offsetof(measure_settings, target_error)},
     {.name = "seed",
      .argument = "N",
      .help = "seed of random numbers (default: 0)",
@@ -138,6 +153,9 @@ static const plm_option options[] = {
 /** A batch under way, and what became of its plants. */
 typedef struct batch_tally {
     size_t failed, skipped;
+    size_t
+        fell_short; /* measured, but without what the time did not allow, or with larger errors than were asked for */
+    bool no_page;   /* there is no time for report.html */
     size_t first_failed; /* its place among the inputs */
     plm_status first_failure;
 } batch_tally;
@@ -167,10 +185,14 @@ static plm_status take_input(batch *open, size_t input, const char *path, const 
         if (has) count->skipped++;
     }
     if (status != PLM_OK || has) return status;
-    plm_status plant_status = PLM_OK;
-    status = run_plant(open, input, path, sha256, run, &plant_status, error);
+    plant_outcome outcome = {0};
+    status = run_plant(open, input, path, sha256, run, &outcome, error);
 #pragma omp critical(plm_batch)
-    if (plant_status != PLM_OK) tell_failure(open, input, plant_status, count);
+    {
+        if (outcome.status != PLM_OK) tell_failure(open, input, outcome.status, count);
+        count->fell_short += outcome.fell_short;
+        count->no_page |= outcome.no_page;
+    }
     return status;
 }
 
@@ -180,10 +202,19 @@ static bool writes_files(const measure_settings *settings)
     return settings->output && settings->files == 0;
 }
 
+/* When the process began, by the time that it has run: what came before main counts too. */
+static double process_begin(void)
+{
+    struct timespec used;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return plm_seconds_now() - ((double)used.tv_sec + 1e-9 * (double)used.tv_nsec);
+}
+
 /* Plants of a large batch are measured side by side, a thread each; of few plants each gets all threads. Either way the
  * tables have the order of the inputs. */
 static plm_status take_inputs(batch *open, const measure_settings *settings, const plm_measure_options *measure,
-                              char *const *input, size_t count, batch_tally *tally, plm_error *error)
+                              const plant_time *time, char *const *input, size_t count, batch_tally *tally,
+                              plm_error *error)
 {
     const bool side_by_side = count >= 2 * (size_t)omp_get_max_threads();
     plm_status status = PLM_OK;
@@ -198,7 +229,10 @@ static plm_status take_inputs(batch *open, const measure_settings *settings, con
         plm_measure_options mine = *measure;
         mine.progress = progress_stage;
         mine.progress_user = &line;
-        const plant_run_options run = {.reading = &settings->reading,
+        const plant_run_options run = {.time = time,
+                                       .begin = count == 1 ? time->begin : plm_seconds_now(),
+                                       .with_page = count == 1,
+                                       .reading = &settings->reading,
                                        .measure = &mine,
                                        .with_files = writes_files(settings),
                                        .views = (size_t)settings->views,
@@ -230,10 +264,10 @@ static plm_status print_results(const batch *done, const measure_settings *setti
     return settings->quiet ? PLM_OK : print_short_table(&done->results, settings->traits, error);
 }
 
-/* 0, or 1 where some plants failed; where all did, the code of their failure. */
+/* 0, or 1 where some plants failed or fell short of what was asked for; where all failed, the code of their failure. */
 static int exit_code(const batch_tally *count, size_t inputs)
 {
-    if (count->failed == 0) return PLM_EXIT_GOOD;
+    if (count->failed == 0) return count->fell_short ? PLM_EXIT_SOME_FAILED : PLM_EXIT_GOOD;
     return count->failed < inputs ? PLM_EXIT_SOME_FAILED : (int)plm_exit_of(count->first_failure);
 }
 
@@ -247,8 +281,8 @@ static plm_status write_corrected(const batch *done, const visibility *correctio
 }
 
 static plm_status run_batch(const measure_settings *settings, const visibility *correction,
-                            const plm_measure_options *measure, char *const *input, size_t count, batch_tally *tally,
-                            plm_error *error)
+                            const plm_measure_options *measure, const plant_time *time, char *const *input,
+                            size_t count, batch_tally *tally, plm_error *error)
 {
     json_t *recorded = NULL;
     batch open;
@@ -256,9 +290,9 @@ static plm_status run_batch(const measure_settings *settings, const visibility *
     if (status != PLM_OK) return status;
     status = batch_open(&open, settings->output, recorded, settings->force, input, count, error);
     if (status != PLM_OK) return status;
-    status = take_inputs(&open, settings, measure, input, count, tally, error);
+    status = take_inputs(&open, settings, measure, time, input, count, tally, error);
     if (status == PLM_OK) status = batch_save(&open, error);
-    if (status == PLM_OK && writes_files(settings)) {
+    if (status == PLM_OK && writes_files(settings) && !tally->no_page) {
         bool has_view;
         const plm_report_options page = {.views = (size_t)settings->views};
         status = plm_report_write(settings->output, &page, &has_view, error);
@@ -274,6 +308,7 @@ static plm_status run_batch(const measure_settings *settings, const visibility *
 
 static int run(int argc, char **argv)
 {
+    plant_time time = {.begin = process_begin()};
     measure_settings settings = measure_setting_defaults();
     const int code = plm_parse_options(&plm_command_measure, &argc, argv, &settings);
     if (code >= 0) return code;
@@ -282,6 +317,14 @@ static int run(int argc, char **argv)
     plm_measure_options measure;
     if (measure_options_of(&settings, &measure, &error) != PLM_OK)
         return plm_usage_error(&plm_command_measure, "%s", error.message);
+    time.seconds = settings.time_budget;
+    for (int i = 0; i < settings.target_error.count; i++)
+        if (plm_targets_parse(settings.target_error.text[i], time.target, &time.target_count, &error) != PLM_OK)
+            return plm_usage_error(&plm_command_measure, "--target-error: %s", error.message);
+    if ((time.seconds > 0 || time.target_count) && settings.points)
+        return plm_usage_error(
+            &plm_command_measure,
+            "--points says how many points are looked at; leave it out, or --time-budget and --target-error");
     if (!settings.correction != !settings.share || (settings.correction && !settings.output))
         return plm_usage_error(&plm_command_measure,
                                "--visibility-correction, --visible-share and --output go together");
@@ -291,7 +334,7 @@ static int run(int argc, char **argv)
     if (status != PLM_OK) return plm_report_failure(status, &error);
     if (settings.threads) omp_set_num_threads(settings.threads);
     batch_tally tally = {0};
-    status = run_batch(&settings, &correction, &measure, argv, (size_t)argc, &tally, &error);
+    status = run_batch(&settings, &correction, &measure, &time, argv, (size_t)argc, &tally, &error);
     visibility_free(&correction);
     return status == PLM_OK ? exit_code(&tally, (size_t)argc) : plm_report_failure(status, &error);
 }
@@ -300,15 +343,20 @@ const plm_command plm_command_measure = {
     .name = "measure",
     .arguments = "[OPTION]... CLOUD...",
     .summary = "measure the plants in each CLOUD",
-    .description = "A CLOUD is one plant: a PLY, PCD, LAS or text file, or a PLY of 3D gaussians; - is standard input. "
-                   "Its file name "
-                   "becomes the plant's name. traits.csv has a row for each trait of each organ, with unit, standard "
-                   "error and status; "
-                   "plants.csv has a row for each plant; run.json records what was read and what was run; report.html "
-                   "shows it all on one page.\n\n"
-                   "A batch that was ended goes on where it was: plants that the folder holds already, from the same "
-                   "bytes and with the "
-                   "same options, are not measured again. One bad file does not stop the others; its row says why.",
+    .description =
+        "A CLOUD is one plant: a PLY, PCD, LAS or text file, or a PLY of 3D gaussians; - is standard input. "
+        "Its file name "
+        "becomes the plant's name. traits.csv has a row for each trait of each organ, with unit, standard "
+        "error and status; "
+        "plants.csv has a row for each plant; run.json records what was read and what was run; report.html "
+        "shows it all on one page.\n\n"
+        "A batch that was ended goes on where it was: plants that the folder holds already, from the same "
+        "bytes and with the "
+        "same options, are not measured again. One bad file does not stop the others; its row says why.\n\n"
+        "--time-budget and --target-error replace --effort: passes over more and more points, until the time is "
+        "used or the errors are reached; both together end with what comes first. run.json records the passes. "
+        "Values that the time did not allow are empty, with that reason; the exit code is then 1, as where a "
+        "target error was not reached.",
     .options = options,
     .option_count = COUNT(options),
     .shared = reading_options,

@@ -71,5 +71,5 @@ void plm_print_overview(void)
         print_wrapped(commands[i]->summary, 14, 14);
     }
     printf("\n`plantimeter COMMAND --help` tells more; `plantimeter --version` tells the version.\n"
-           "Exit codes: 0 good, 1 some plant failed, 2 wrong usage, 3 bad input, 4 cannot write.\n");
+           "Exit codes: 0 good, 1 some plant failed or fell short, 2 wrong usage, 3 bad input, 4 cannot write.\n");
 }

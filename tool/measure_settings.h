@@ -7,7 +7,8 @@
 typedef struct measure_settings {
     reading_settings reading;
     const char *output, *traits, *ground, *correction, *share;
-    double stem_height, alpha;
+    double stem_height, alpha, time_budget;
+    plm_texts target_error;
     int neighbours, effort, points, habit, threads, files, views;
     uint64_t seed;
     bool force, quiet, json;

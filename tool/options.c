@@ -55,22 +55,42 @@ bool plm_parse_number(const char *text, double *number)
     return true;
 }
 
+typedef struct suffix {
+    const char *name;
+    double factor;
+} suffix;
+
+/* A number with one of the suffixes. */
+static bool parse_with_suffix(const char *text, const suffix *suffixes, size_t count, double *value)
+{
+    char *end;
+    const double number = strtod(text, &end);
+    if (end == text || !isfinite(number)) return false;
+    while (*end == ' ') end++;
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(end, suffixes[i].name)) {
+            *value = number * suffixes[i].factor;
+            return true;
+        }
+    return false;
+}
+
+plm_status plm_parse_duration(const char *text, double *seconds, plm_error *error)
+{
+    static const suffix suffixes[] = {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"min", 60}};
+    double value;
+    if (parse_with_suffix(text, suffixes, COUNT(suffixes), &value) && value > 0) {
+        *seconds = value;
+        return PLM_OK;
+    }
+    return plm_fail(error, PLM_E_ARGUMENT, "\"%s\" is no time; expected a number above 0 with ms, s or min, e.g. 500ms",
+                    text);
+}
+
 plm_status plm_parse_length(const char *text, double *metres, plm_error *error)
 {
-    static const struct suffix {
-        const char *name;
-        double factor;
-    } suffixes[] = {{"", 1}, {"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}};
-    char *end;
-    const double value = strtod(text, &end);
-    if (end != text && isfinite(value)) {
-        while (*end == ' ') end++;
-        for (size_t i = 0; i < COUNT(suffixes); i++)
-            if (!strcmp(end, suffixes[i].name)) {
-                *metres = value * suffixes[i].factor;
-                return PLM_OK;
-            }
-    }
+    static const suffix suffixes[] = {{"", 1}, {"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}};
+    if (parse_with_suffix(text, suffixes, COUNT(suffixes), metres)) return PLM_OK;
     return plm_fail(error, PLM_E_ARGUMENT, "\"%s\" is no length; expected a number with m, cm or mm, e.g. 20mm", text);
 }
 
@@ -120,6 +140,14 @@ static plm_status parse_choice(const plm_option *option, const char *text, int *
     return plm_fail(error, PLM_E_ARGUMENT, "\"%s\" is none of %s", text, option->argument);
 }
 
+static plm_status append_text(const char *text, plm_texts *texts, plm_error *error)
+{
+    if ((size_t)texts->count == COUNT(texts->text))
+        return plm_fail(error, PLM_E_ARGUMENT, "given more than %zu times", COUNT(texts->text));
+    texts->text[texts->count++] = text;
+    return PLM_OK;
+}
+
 static plm_status store(const plm_option *option, const char *text, void *field, plm_error *error)
 {
     plm_status status = PLM_OK;
@@ -140,6 +168,10 @@ static plm_status store(const plm_option *option, const char *text, void *field,
         case PLM_OPTION_LENGTH:
             status = plm_parse_length(text, field, error);
             return status == PLM_OK ? check_range(option, text, *(double *)field, error) : status;
+        case PLM_OPTION_DURATION:
+            return plm_parse_duration(text, field, error);
+        case PLM_OPTION_TEXTS:
+            return append_text(text, field, error);
         case PLM_OPTION_CHOICE:
             return parse_choice(option, text, field, error);
     }

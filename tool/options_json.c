@@ -12,6 +12,17 @@ static json_t *choice_json(const char *words, int place)
     return json_stringn(words, strcspn(words, "|"));
 }
 
+static json_t *texts_json(const plm_texts *texts)
+{
+    json_t *array = json_array();
+    bool is_complete = array != NULL;
+    for (int i = 0; i < texts->count; i++)
+        is_complete &= json_array_append_new(array, json_string(texts->text[i])) == 0;
+    if (is_complete) return array;
+    json_decref(array);
+    return NULL;
+}
+
 static json_t *value_json(const plm_option *option, const void *field)
 {
     const char *text = NULL;
@@ -21,8 +32,11 @@ static json_t *value_json(const plm_option *option, const void *field)
         case PLM_OPTION_TEXT:
             text = *(const char *const *)field;
             return text ? json_string(text) : json_null();
+        case PLM_OPTION_TEXTS:
+            return texts_json(field);
         case PLM_OPTION_NUMBER:
         case PLM_OPTION_LENGTH:
+        case PLM_OPTION_DURATION:
             return json_real(*(const double *)field);
         case PLM_OPTION_INTEGER:
             return json_integer(*(const int *)field);

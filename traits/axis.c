@@ -56,8 +56,9 @@ static plm_status fit_label(plm_scene *scene, plm_label label, plm_error *error)
     if (!status) return PLM_E_MEMORY;
 #pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < scene->organ_count; i++)
-        if (scene->organ[i].label == label) status[i] = fit_organ(scene, &scene->organ[i], NULL);
-    plm_status result = PLM_OK;
+        if (scene->organ[i].label == label && !plm_deadline_passed(scene->options->deadline))
+            status[i] = fit_organ(scene, &scene->organ[i], NULL);
+    plm_status result = plm_deadline_check(scene->options->deadline, error);
     for (size_t i = 0; i < scene->organ_count && result == PLM_OK; i++)
         if (status[i] != PLM_OK)
             result = plm_fail(error, status[i], "%s %d: no axis through its %zu points: %s", plm_label_name(label),

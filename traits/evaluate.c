@@ -2,6 +2,8 @@
  * not finite becomes a failure with its reason. Organs are measured in parallel, each trait into its own place. */
 #include "traits/evaluate.h"
 
+#include "traits/plan.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,12 +48,20 @@ static size_t list_calls(const plm_scene *scene, const bool *chosen, call *calls
     return count;
 }
 
+/* Whether there was or is no time for a trait. */
+static bool is_late(const plm_scene *scene, const plm_trait *trait)
+{
+    return (plm_needs_closure(trait->needs) & scene->late) || plm_deadline_passed(scene->options->deadline);
+}
+
 /* Why a trait cannot be had whatever its function does. */
 static bool is_out_of_reach(const plm_scene *scene, const call *made, plm_estimate *out)
 {
     const plm_trait *trait = made->trait;
     if (trait->needs & PLM_NEEDS_COLOUR && !scene->has_colour)
         plm_not_applicable(out, "the cloud has no colour");
+    else if (is_late(scene, trait))
+        plm_trait_failed(out, "time budget: no time was left for what it needs; give more");
     else if (scene->plant_count == 0)
         plm_not_applicable(out, "no point of the cloud belongs to the plant");
     else if (scene->organ_reason[0] && (trait->needs & needs_organs))
@@ -100,24 +110,22 @@ static void plant_centroid(const plm_scene *scene, double centroid[3])
     }
 }
 
-/* Plant traits one after the other, as they may use all threads themselves; organs side by side. */
+/* Side by side: each call writes to its own row, and what a trait does in parallel itself it then does alone. */
 static void measure_all(const plm_scene *scene, const call *calls, size_t count, plm_trait_value *values,
                         plm_status *status, plm_error *errors)
 {
-    size_t plant_calls = 0;
-    while (plant_calls < count && calls[plant_calls].trait->level == PLM_PLANT) {
-        const size_t i = plant_calls++;
-        status[i] = measure_one(scene, &calls[i], &values[i].estimate, &errors[i]);
-        if (status[i] != PLM_OK) return;
-    }
 #pragma omp parallel for schedule(dynamic)
-    for (size_t i = plant_calls; i < count; i++) {
-        status[i] = measure_one(scene, &calls[i], &values[i].estimate, &errors[i]);
-    }
+    for (size_t i = 0; i < count; i++) status[i] = measure_one(scene, &calls[i], &values[i].estimate, &errors[i]);
+}
+
+/* Whether the value is missing for want of time: its reason says so. */
+static bool was_late(const plm_estimate *estimate)
+{
+    return estimate->state == PLM_STATE_FAILED && !strncmp(estimate->reason, "time budget", strlen("time budget"));
 }
 
 plm_status plm_evaluate(const plm_scene *scene, const bool *chosen, plm_trait_value **values, size_t *value_count,
-                        plm_error *error)
+                        bool late[2], plm_error *error)
 {
     const size_t count = list_calls(scene, chosen, NULL);
     plm_status result = PLM_E_MEMORY;
@@ -136,6 +144,8 @@ plm_status plm_evaluate(const plm_scene *scene, const bool *chosen, plm_trait_va
             if (status[i] != PLM_OK)
                 result = plm_fail(error, status[i], "%s: %s", calls[i].trait->name, errors[i].message);
     }
+    for (size_t i = 0; i < count && result == PLM_OK; i++)
+        if (was_late(&made[i].estimate)) late[(plm_needs_closure(made[i].trait->needs) & PLM_NEEDS_ORGANS) != 0] = true;
     if (result == PLM_OK) {
         *values = made;
         *value_count = count;

@@ -29,6 +29,8 @@ static const double noise_unknown = 0.5;
 static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach = 3.0;
 /* ... and against the whole plant's, as floaters have floaters beside them: splats are 20-fold uneven, a factor of 4.5. */
 static const double alone_reach = 6.0;
+/* Depth of a band per noise, at least. */
+static const double band_noise = 12;
 
 /* ---- Projection ------------------------------------------------------------------------------------------------ */
 
@@ -244,15 +246,18 @@ static void find_end(const heights *found, const plm_sampling *sampling, const d
     extreme->std_error = sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise);
 }
 
-static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3], plm_sampling *sampling,
-                               plm_extreme *extreme, plm_error *error)
+static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3],
+                               const plm_sampling *known, plm_sampling *sampling, plm_extreme *extreme,
+                               plm_error *error)
 {
     heights found = {.at = plm_alloc(count, sizeof *found.at, error)};
     ranked *rank = NULL;
     plm_index *index = NULL;
     plm_status status = found.at ? rank_heights(band, count, direction, &rank, error) : PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_index_build(band, count, &index, error);
-    if (status == PLM_OK) {
+    if (status == PLM_OK && known) {
+        *sampling = *known;
+    } else if (status == PLM_OK) {
         *sampling = (plm_sampling){0};
         status = plm_sampling_measure(index, band, count, NULL, sampling, error);
         if (status == PLM_E_DEGENERATE) status = PLM_OK; /* a few points, or all in one place: taken as they are */
@@ -264,6 +269,7 @@ static plm_status measure_band(const float (*band)[3], size_t count, const doubl
             for (; found.count < count; found.count++) found.at[found.count] = rank[found.count].height;
         find_end(&found, sampling, direction, extreme);
         extreme->count = count;
+        extreme->sampling = *sampling;
     }
     plm_index_free(index);
     plm_free(rank);
@@ -274,10 +280,16 @@ static plm_status measure_band(const float (*band)[3], size_t count, const doubl
 plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3], plm_extreme *extreme,
                              plm_error *error)
 {
+    return plm_extreme_of_sampling(xyz, count, direction, NULL, extreme, error);
+}
+
+plm_status plm_extreme_of_sampling(const float (*xyz)[3], size_t count, const double direction[3],
+                                   const plm_sampling *known, plm_extreme *extreme, plm_error *error)
+{
     if (count == 0) return plm_fail(error, PLM_E_DEGENERATE, "there are no points");
     double *along = plm_alloc(count, sizeof *along, error);
     if (!along) return PLM_E_MEMORY;
-    double low = INFINITY, high = -INFINITY, thickness = 0;
+    double low = INFINITY, high = -INFINITY, thickness = known ? band_noise * known->noise : 0;
     for (size_t i = 0; i < count; i++) {
         along[i] = xyz[i][0] * direction[0] + xyz[i][1] * direction[1] + xyz[i][2] * direction[2];
         low = fmin(low, along[i]);
@@ -293,11 +305,11 @@ plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double d
         status = band ? PLM_OK : PLM_E_MEMORY;
         if (status == PLM_OK) {
             collect(xyz, along, count, floor, band);
-            status = measure_band((const float(*)[3])band, size, direction, &sampling, &found, error);
+            status = measure_band((const float(*)[3])band, size, direction, known, &sampling, &found, error);
         }
         plm_free(band);
         /* Points of the band's lower side must find their neighbours in it. */
-        thickness = 12 * sampling.noise;
+        thickness = band_noise * sampling.noise;
         if (high - floor >= thickness || floor <= low) break;
     }
     if (status == PLM_OK) *extreme = found;

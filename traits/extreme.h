@@ -8,7 +8,8 @@
 typedef struct plm_extreme {
     double value; /**< along the direction, in the points' frame */
     double std_error;
-    size_t count; /**< points of the band that it rests on */
+    size_t count;          /**< points of the band that it rests on */
+    plm_sampling sampling; /**< there */
 } plm_extreme;
 
 /** Finds how far the surface behind count points reaches along a unit direction. Only the outermost points are looked at
@@ -19,6 +20,10 @@ typedef struct plm_extreme {
  * PLM_E_DEGENERATE for no points. */
 plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3], plm_extreme *extreme,
                              plm_error *error);
+
+/** The same where spacing and noise of the surface there are known, which is most of the work. */
+plm_status plm_extreme_of_sampling(const float (*xyz)[3], size_t count, const double direction[3],
+                                   const plm_sampling *sampling, plm_extreme *extreme, plm_error *error);
 
 /** A point moved onto the surface through its neighbours. */
 typedef struct plm_projection {

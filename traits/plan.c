@@ -117,7 +117,7 @@ void plm_plan_leave_out(plm_plan *plan, plm_stage_id id, const char *format, ...
     va_end(arguments);
 }
 
-static unsigned closure(unsigned needs)
+unsigned plm_needs_closure(unsigned needs)
 {
     for (int i = 0; i < RESTS_COUNT; i++)
         if (needs & rests[i].need) needs |= rests[i].on;
@@ -129,10 +129,10 @@ static void name_users(plm_stage *stage, unsigned stage_needs, const bool *chose
 {
     size_t count, users = 0, named = 0;
     const plm_trait *trait = plm_traits(&count);
-    for (size_t i = 0; i < count; i++) users += chosen[i] && closure(trait[i].needs) & stage_needs;
+    for (size_t i = 0; i < count; i++) users += chosen[i] && plm_needs_closure(trait[i].needs) & stage_needs;
     size_t length = (size_t)snprintf(stage->why, sizeof stage->why, "for ");
     for (size_t i = 0; i < count && named < 3; i++) {
-        if (!chosen[i] || !(closure(trait[i].needs) & stage_needs)) continue;
+        if (!chosen[i] || !(plm_needs_closure(trait[i].needs) & stage_needs)) continue;
         length +=
             (size_t)snprintf(stage->why + length, sizeof stage->why - length, "%s%s", named ? ", " : "", trait[i].name);
         if (length >= sizeof stage->why) return;
@@ -153,36 +153,51 @@ static void leave_out_needless(plm_plan *plan, unsigned attributes, const plm_me
         plm_plan_leave_out(plan, PLM_STAGE_GROUND, "left out: the options say that there is no ground");
 }
 
-plm_status plm_plan_make(const plm_measure_options *options, unsigned attributes, plm_plan *plan, plm_error *error)
+unsigned plm_stage_needs(plm_stage_id id)
+{
+    return stages[id].needs;
+}
+
+plm_status plm_plan_of(const plm_measure_options *options, const bool *list, unsigned attributes, plm_plan *plan,
+                       plm_error *error)
 {
     size_t count;
     const plm_trait *trait = plm_traits(&count);
     bool *chosen = plm_alloc(count, sizeof *chosen, error);
     if (!chosen) return PLM_E_MEMORY;
-    const plm_status status = plm_trait_choose(options->traits, chosen, error);
-    if (status == PLM_OK) {
-        plm_plan made = {.stage_count = PLM_STAGE_COUNT};
-        for (size_t i = 0; i < count; i++) {
-            const bool is_blind = trait[i].needs & PLM_NEEDS_COLOUR && !(attributes & PLM_HAS_RGB);
-            if (chosen[i] && is_blind) chosen[i] = false; /* it will say so; nothing is run for it */
-            if (chosen[i]) made.needs |= closure(trait[i].needs);
-        }
-        for (int id = 0; id < PLM_STAGE_COUNT; id++) {
-            plm_stage *stage = &made.stage[id];
-            stage->name = stages[id].name;
-            stage->runs = (made.needs & stages[id].needs) || stages[id].needs == NEEDS_ALWAYS;
-            if (!stage->runs)
-                plm_plan_leave_out(&made, (plm_stage_id)id, "left out: %s",
-                                   id == PLM_STAGE_LIGHT ? "absorbed_radiation was not asked for by its name"
-                                                         : "no trait asked for needs it");
-            else if (stages[id].needs == NEEDS_ALWAYS)
-                snprintf(stage->why, sizeof stage->why, "all traits asked for");
-            else
-                name_users(stage, stages[id].needs, chosen);
-        }
-        leave_out_needless(&made, attributes, options);
-        *plan = made;
+    plm_plan made = {.stage_count = PLM_STAGE_COUNT};
+    for (size_t i = 0; i < count; i++) { /* what is blind will say so; nothing is run for it */
+        const bool is_blind = trait[i].needs & PLM_NEEDS_COLOUR && !(attributes & PLM_HAS_RGB);
+        chosen[i] = list[i] && !is_blind;
+        if (chosen[i]) made.needs |= plm_needs_closure(trait[i].needs);
     }
+    for (int id = 0; id < PLM_STAGE_COUNT; id++) {
+        plm_stage *stage = &made.stage[id];
+        stage->name = stages[id].name;
+        stage->runs = (made.needs & stages[id].needs) || stages[id].needs == NEEDS_ALWAYS;
+        if (!stage->runs)
+            plm_plan_leave_out(&made, (plm_stage_id)id, "left out: %s",
+                               id == PLM_STAGE_LIGHT ? "absorbed_radiation was not asked for by its name"
+                                                     : "no trait asked for needs it");
+        else if (stages[id].needs == NEEDS_ALWAYS)
+            snprintf(stage->why, sizeof stage->why, "all traits asked for");
+        else
+            name_users(stage, stages[id].needs, chosen);
+    }
+    leave_out_needless(&made, attributes, options);
+    *plan = made;
+    plm_free(chosen);
+    return PLM_OK;
+}
+
+plm_status plm_plan_make(const plm_measure_options *options, unsigned attributes, plm_plan *plan, plm_error *error)
+{
+    size_t count;
+    plm_traits(&count);
+    bool *chosen = plm_alloc(count, sizeof *chosen, error);
+    if (!chosen) return PLM_E_MEMORY;
+    plm_status status = plm_trait_choose(options->traits, chosen, error);
+    if (status == PLM_OK) status = plm_plan_of(options, chosen, attributes, plan, error);
     plm_free(chosen);
     return status;
 }

@@ -26,6 +26,14 @@ typedef enum plm_stage_id {
  * PLM_E_ARGUMENT  an unknown name (the message names the nearest one), or no name at all. */
 plm_status plm_trait_choose(const char *list, bool *chosen, plm_error *error);
 
+/** As plm_plan_make, for the rows of the trait table that chosen marks. */
+plm_status plm_plan_of(const plm_measure_options *options, const bool *chosen, unsigned attributes, plm_plan *plan,
+                       plm_error *error);
+
+/** PLM_NEEDS_... with all that they rest on; and those that make a stage run. */
+unsigned plm_needs_closure(unsigned needs);
+unsigned plm_stage_needs(plm_stage_id stage);
+
 /** The most points that the stages look at: options->points, or by effort; 0: all. */
 size_t plm_point_budget(const plm_measure_options *options);
 

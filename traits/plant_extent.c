@@ -9,6 +9,7 @@
 #include "traits/scene.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Voxels along the plant's longest side for its second moments; fewer where more than a share of them has one point. */
 enum { FINEST_VOXELS = 200, COARSEST_VOXELS = 50 };
@@ -18,18 +19,28 @@ static const double axis_turn = 0.012;
 /* A pair of points that is wider apart than the surface there by this factor holds stray points. */
 static const double stray_share = 1.02;
 
+/* end: out, both ends, may be NULL. known: NULL, or ends in nearly the same direction, whose sampling is taken over. */
+static plm_status extent_between(const plm_scene *scene, const double axis[3], const plm_extreme *known,
+                                 plm_extreme end[2], double *extent, double *std_error, plm_error *error)
+{
+    plm_extreme found[2];
+    plm_status status = PLM_OK;
+    for (int i = 0; i < 2 && status == PLM_OK; i++) {
+        const double sign = i ? -1 : 1, direction[3] = {sign * axis[0], sign * axis[1], sign * axis[2]};
+        status = plm_extreme_of_sampling((const float(*)[3])scene->plant, scene->plant_count, direction,
+                                         known ? &known[i].sampling : NULL, &found[i], error);
+    }
+    if (status != PLM_OK) return status;
+    if (end) memcpy(end, found, sizeof found);
+    *extent = found[0].value + found[1].value;
+    *std_error = hypot(found[0].std_error, found[1].std_error);
+    return PLM_OK;
+}
+
 static plm_status extent_along(const plm_scene *scene, const double axis[3], double *extent, double *std_error,
                                plm_error *error)
 {
-    const double back[3] = {-axis[0], -axis[1], -axis[2]};
-    plm_extreme one, other;
-    plm_status status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, axis, &one, error);
-    if (status == PLM_OK)
-        status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, back, &other, error);
-    if (status != PLM_OK) return status;
-    *extent = one.value + other.value;
-    *std_error = hypot(one.std_error, other.std_error);
-    return PLM_OK;
+    return extent_between(scene, axis, NULL, NULL, extent, std_error, error);
 }
 
 static plm_status box_length(const plm_scene *scene, int axis, plm_estimate *out, plm_error *error)
@@ -179,7 +190,8 @@ static plm_status principal_extent(const plm_scene *scene, bool flat, int which,
     double value[3], axis[3][3];
     plm_status status = principal_axes(scene, flat, value, axis, error);
     if (status != PLM_OK) return status;
-    status = extent_along(scene, axis[which], &out->value, &out->std_error, error);
+    plm_extreme end[2];
+    status = extent_between(scene, axis[which], NULL, end, &out->value, &out->std_error, error);
     if (status != PLM_OK) return status;
     const int other = flat ? 1 - which : which == 1 ? (value[0] - value[1] < value[1] - value[2] ? 0 : 2) : 1;
     const double gap = fabs(value[which] - value[other]) / fmax(value[which], value[other]);
@@ -187,9 +199,9 @@ static plm_status principal_extent(const plm_scene *scene, bool flat, int which,
     const double turn = fmin(axis_turn / fmax(gap, 1e-3), 0.8);
     double squares = 0;
     for (int side = -1; side <= 1 && status == PLM_OK; side += 2) {
-        double turned[3], extent, ignored;
+        double turned[3], extent = 0, ignored;
         for (int k = 0; k < 3; k++) turned[k] = cos(turn) * axis[which][k] + side * sin(turn) * axis[other][k];
-        status = extent_along(scene, turned, &extent, &ignored, error);
+        status = extent_between(scene, turned, end, NULL, &extent, &ignored, error);
         squares += 0.5 * (extent - out->value) * (extent - out->value);
     }
     out->std_error = sqrt(out->std_error * out->std_error + squares);

@@ -54,6 +54,7 @@ struct plm_scene {
     double smoothness_mean, smoothness_sd, boundary_share; /* NAN where not measured */
     double absorbed, absorbed_error;                       /* W */
     char light_reason[160];                                /* why there is no light; "" where there is */
+    unsigned late;                                         /* PLM_NEEDS_... that there was no time for */
     plm_status hull_status;
     char hull_reason[160];
 };

@@ -27,8 +27,9 @@ plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error)
     if (!status) return PLM_E_MEMORY;
 #pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < scene->organ_count; i++)
-        if (scene->organ[i].label == PLM_LABEL_LEAF) status[i] = make_surface(scene, &scene->organ[i]);
-    plm_status result = PLM_OK;
+        if (scene->organ[i].label == PLM_LABEL_LEAF && !plm_deadline_passed(scene->options->deadline))
+            status[i] = make_surface(scene, &scene->organ[i]);
+    plm_status result = plm_deadline_check(scene->options->deadline, error);
     for (size_t i = 0; i < scene->organ_count && result == PLM_OK; i++)
         if (status[i] != PLM_OK)
             result = plm_fail(error, status[i], "leaf %d: %s", scene->organ[i].id, scene->organ[i].surface_reason);

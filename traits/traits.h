@@ -113,6 +113,8 @@ typedef struct plm_measure_options {
     uint64_t seed;
     bool is_splat;             /**< the cloud holds gaussians (extent is set) */
     plm_light_function *light; /**< for absorbed_radiation; NULL: it is not applicable */
+    /** What has not ended by then is given up, and the values that needed it fail with the reason "time budget"; NULL: none. */
+    const plm_deadline *deadline;
     /** Called at the start of each stage; NULL: no talk. */
     void (*progress)(const char *stage, void *user);
     void *progress_user;
@@ -126,7 +128,8 @@ typedef struct plm_stage {
     bool runs;
     char why[160]; /**< which traits need it, or why it is left out */
     double seconds;
-    uint64_t peak_bytes; /**< peak resident memory of the process after the stage */
+    double processor_seconds; /**< of all threads */
+    uint64_t peak_bytes;      /**< peak resident memory of the process after the stage */
 } plm_stage;
 
 enum { PLM_STAGE_MAXIMUM = 16 };

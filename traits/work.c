@@ -11,44 +11,41 @@
 /** A left-out point farther than this from all seen ones belongs to none of them. */
 static const double reach_in_spacings = 5;
 
-/* Rows of the cloud in the order that follows from the coordinates of the chosen ones. */
-static plm_status put_in_order(plm_work *work, const plm_cloud *cloud, plm_error *error)
-{
-    plm_cloud chosen = {0};
-    uint32_t *place = plm_alloc(work->count, sizeof *place, error);
-    uint32_t *row = place ? plm_alloc(work->count, sizeof *row, error) : NULL;
-    plm_status status = row ? plm_cloud_select(cloud, work->row, work->count, &chosen, error) : PLM_E_MEMORY;
-    if (status == PLM_OK) status = plm_spatial_order((const float(*)[3])chosen.xyz, work->count, place, error);
-    if (status == PLM_OK) {
-        for (size_t i = 0; i < work->count; i++) row[i] = work->row[place[i]];
-        memcpy(work->row, row, work->count * sizeof *row);
-    }
-    plm_cloud_free(&chosen);
-    plm_free(place);
-    plm_free(row);
-    return status;
-}
-
-plm_status plm_work_make(const plm_cloud *cloud, size_t budget, bool in_order, plm_work *work, plm_error *error)
+plm_status plm_work_make(const plm_cloud *cloud, size_t budget, plm_work *work, plm_error *error)
 {
     plm_work made = {.count = cloud->count};
-    const bool is_thinned = budget && cloud->count > budget;
-    plm_status status = PLM_OK;
-    if (is_thinned || in_order) {
-        const float(*xyz)[3] = (const float(*)[3])cloud->xyz;
-        made.row = plm_alloc(cloud->count, sizeof *made.row, error);
-        if (!made.row) return PLM_E_MEMORY;
-        if (is_thinned) made.count = plm_sample_rows(xyz, cloud->count, budget, made.row);
-        if (is_thinned && in_order)
-            status = put_in_order(&made, cloud, error);
-        else if (in_order)
-            status = plm_spatial_order(xyz, cloud->count, made.row, error);
-        if (status == PLM_OK) status = plm_cloud_select(cloud, made.row, made.count, &made.cloud, error);
-    }
+    made.row = plm_alloc(cloud->count, sizeof *made.row, error);
+    if (!made.row) return PLM_E_MEMORY;
+    if (budget && cloud->count > budget)
+        made.count = plm_sample_rows((const float(*)[3])cloud->xyz, cloud->count, budget, made.row);
+    else
+        for (size_t i = 0; i < cloud->count; i++) made.row[i] = (uint32_t)i;
+    const plm_status status = plm_cloud_select(cloud, made.row, made.count, &made.cloud, error);
     if (status == PLM_OK)
         *work = made;
     else
         plm_work_free(&made);
+    return status;
+}
+
+plm_status plm_work_order(plm_work *work, plm_error *error)
+{
+    plm_cloud in_order = {0};
+    uint32_t *place = plm_alloc(work->count, sizeof *place, error);
+    uint32_t *row = place ? plm_alloc(work->count, sizeof *row, error) : NULL;
+    plm_status status = row ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) status = plm_spatial_order((const float(*)[3])work->cloud.xyz, work->count, place, error);
+    if (status == PLM_OK) status = plm_cloud_select(&work->cloud, place, work->count, &in_order, error);
+    if (status == PLM_OK) {
+        for (size_t i = 0; i < work->count; i++) row[i] = work->row[place[i]];
+        plm_free(work->row);
+        plm_cloud_free(&work->cloud);
+        work->row = row;
+        work->cloud = in_order;
+        row = NULL;
+    }
+    plm_free(place);
+    plm_free(row);
     return status;
 }
 
@@ -65,8 +62,8 @@ void plm_work_free(plm_work *work)
 static plm_status find_source(const plm_work *work, const plm_cloud *cloud, double spacing, uint32_t *source,
                               plm_error *error)
 {
-    for (size_t i = 0; i < cloud->count; i++) source[i] = work->row ? PLM_NO_ROW : (uint32_t)i;
-    for (size_t i = 0; work->row && i < work->count; i++) source[work->row[i]] = (uint32_t)i;
+    for (size_t i = 0; i < cloud->count; i++) source[i] = PLM_NO_ROW;
+    for (size_t i = 0; i < work->count; i++) source[work->row[i]] = (uint32_t)i;
     if (work->count == cloud->count) return PLM_OK;
     plm_index *index = NULL;
     const plm_status status = plm_index_build((const float(*)[3])work->cloud.xyz, work->count, &index, error);
@@ -114,7 +111,7 @@ plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, p
     }
     for (size_t row = 0; row < cloud->count; row++) {
         const uint32_t from = source[row];
-        const bool was_seen = from != PLM_NO_ROW && (!work->row || work->row[from] == row);
+        const bool was_seen = from != PLM_NO_ROW && work->row[from] == row;
         plm_label label = PLM_LABEL_OTHER;
         int32_t organ = -1, leaflet = -1;
         if (was_seen || (from != PLM_NO_ROW && !has_labels)) {
@@ -132,5 +129,15 @@ plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, p
     plm_free(source);
     found->leaf_flags = NULL; /* moved with the struct */
     *to = made;
+    return PLM_OK;
+}
+
+plm_status plm_segmentation_to_cloud(const plm_segmentation *segmentation, plm_cloud *cloud, plm_error *error)
+{
+    if (!cloud->label) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
+    if (cloud->label && !cloud->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
+    if (!cloud->label || !cloud->organ) return PLM_E_MEMORY;
+    memcpy(cloud->label, segmentation->label, cloud->count * sizeof *cloud->label);
+    memcpy(cloud->organ, segmentation->organ, cloud->count * sizeof *cloud->organ);
     return PLM_OK;
 }

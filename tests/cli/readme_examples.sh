@@ -15,7 +15,7 @@ awk -F, 'NR == 1 { print "plant_id,organ,organ_id,trait,value,unit" }
 sed -n '/^## Everyday use/,/^Each command/s/^    \(plantimeter .*\)/\1/p' "$EXAMPLES/../../README.md" |
     sed -e 's/ *#.*//' -e 's/-n 10/-n 1 --points 3000 --resolution 0.2/' -e 's/^plantimeter light.*/& --rays 2000/' \
         -e 's/^plantimeter selftest/& --only hulls/' \
-        -e 's/^plantimeter tradeoff.*/& --quick --cloud-points 3000 --up z --traits plant_height --competitors none/' -e 's/--max-loss 30/--max-loss 2 --density 0.003 --rays 1000 --scenarios random/' >examples
+        -e 's/^plantimeter tradeoff.*/& --quick --cloud-points 3000 --up z --traits plant_height --competitors none/' -e 's/500ms/1min/' -e 's/leaf_area=2%/leaf_area=60%/' -e 's/--max-loss 30/--max-loss 2 --density 0.003 --rays 1000 --scenarios random/' >examples
 while read -r line; do
     sh -c "$line" >printed 2>messages || { echo "exit $?: $line"; cat messages; }
     [ -s printed ] || echo "nothing printed: $line"
