@@ -115,6 +115,7 @@ void tradeoff_free(tradeoff *study)
     plm_free(study->plant);
     plm_free(study->setting);
     plm_free(study->run);
+    plm_free(study->run_place);
     plm_free(study->row);
     plm_free(study->rival);
     plm_free(study->is_wanted);

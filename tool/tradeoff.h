@@ -97,7 +97,9 @@ typedef struct tradeoff {
     tradeoff_plant *plant;
     tradeoff_setting *setting;
     tradeoff_group group[TRADEOFF_GROUPS];
-    tradeoff_run *run;
+    tradeoff_run *run; /* plant after plant */
+    size_t *run_place; /* by plant, setting of the grid and group: number of the run from 1 on, 0 for none */
+    size_t grid_count; /* settings that were run */
     tradeoff_row *row;
     tradeoff_rival *rival;
     bool *is_wanted; /* a trait of the table each */

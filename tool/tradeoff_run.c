@@ -371,18 +371,22 @@ static size_t budget_on(const tradeoff_plant *plant, const tradeoff_setting *set
     return setting->points >= plant->point_count ? 0 : setting->points;
 }
 
-/* A run that was the same, under another name. */
+static size_t place_of(const tradeoff *study, size_t plant, size_t setting, size_t group)
+{
+    return (plant * study->grid_count + setting) * TRADEOFF_GROUPS + group;
+}
+
+/* A run that was the same, under another name. Runs of one plant lie together, the last one's at the end. */
 static const tradeoff_run *find_same(const tradeoff *study, const tradeoff_run *run)
 {
     const tradeoff_plant *plant = &study->plant[run->plant];
     const tradeoff_setting *setting = &study->setting[run->setting];
-    for (size_t i = 0; i < study->run_count; i++) {
+    for (size_t i = study->run_count; i-- > 0 && study->run[i].plant == run->plant;) {
         const tradeoff_run *other = &study->run[i];
         const tradeoff_setting *theirs = &study->setting[other->setting];
-        if (other->plant == run->plant && other->group == run->group && theirs->labels == setting->labels &&
-            theirs->alpha == setting->alpha && theirs->neighbours == setting->neighbours &&
-            !strcmp(theirs->method, setting->method) && !strcmp(theirs->rival, setting->rival) &&
-            budget_on(plant, theirs) == budget_on(plant, setting))
+        if (other->group == run->group && theirs->labels == setting->labels && theirs->alpha == setting->alpha &&
+            theirs->neighbours == setting->neighbours && !strcmp(theirs->method, setting->method) &&
+            !strcmp(theirs->rival, setting->rival) && budget_on(plant, theirs) == budget_on(plant, setting))
             return other;
     }
     return NULL;
@@ -392,11 +396,10 @@ static const tradeoff_run *find_same(const tradeoff *study, const tradeoff_run *
 static double alpha_found(const tradeoff *study, const tradeoff_run *run)
 {
     const tradeoff_setting *setting = &study->setting[run->setting];
-    for (size_t i = 0; i < study->run_count; i++) {
+    for (size_t i = study->run_count; i-- > 0 && study->run[i].plant == run->plant;) {
         const tradeoff_setting *theirs = &study->setting[study->run[i].setting];
-        if (study->run[i].plant == run->plant && study->run[i].group == run->group &&
-            theirs->labels == setting->labels && theirs->points == setting->points && theirs->alpha == 0 &&
-            !strcmp(theirs->method, setting->method))
+        if (study->run[i].group == run->group && theirs->labels == setting->labels &&
+            theirs->points == setting->points && theirs->alpha == 0 && !strcmp(theirs->method, setting->method))
             return study->run[i].leaf_alpha;
     }
     return NAN;
@@ -434,6 +437,7 @@ static plm_status take_run(tradeoff *study, tradeoff_run run, plm_error *error)
         snprintf(run.why, sizeof run.why, "%.150s", trouble.message);
     }
     study->run[study->run_count++] = run;
+    study->run_place[place_of(study, run.plant, run.setting, run.group)] = study->run_count;
     return PLM_OK;
 }
 
@@ -452,7 +456,10 @@ static void show(const tradeoff *study, size_t plant, size_t setting)
 
 plm_status tradeoff_run_all(tradeoff *study, plm_error *error)
 {
-    plm_status status = PLM_OK;
+    study->grid_count = study->setting_count;
+    study->run_place =
+        plm_alloc_zero(study->plant_count * study->grid_count, TRADEOFF_GROUPS * sizeof *study->run_place, error);
+    plm_status status = study->run_place ? PLM_OK : PLM_E_MEMORY;
     for (size_t p = 0; p < study->plant_count; p++)
         for (size_t s = 0; s < study->setting_count && status == PLM_OK; s++) {
             const tradeoff_setting *setting = &study->setting[s];
@@ -470,9 +477,7 @@ plm_status tradeoff_run_all(tradeoff *study, plm_error *error)
 
 const tradeoff_run *tradeoff_find_run(const tradeoff *study, size_t plant, size_t setting, size_t group)
 {
-    for (size_t i = 0; i < study->run_count; i++) {
-        const tradeoff_run *run = &study->run[i];
-        if (run->plant == plant && run->setting == setting && run->group == group) return run;
-    }
-    return NULL;
+    if (setting >= study->grid_count || group >= TRADEOFF_GROUPS) return NULL;
+    const size_t place = study->run_place[place_of(study, plant, setting, group)];
+    return place ? &study->run[place - 1] : NULL;
 }
