@@ -10,8 +10,11 @@
 static const double END_REACH = 2;      /* feet this near to the path's end (in R) are at its end */
 static const double SESSILE = 0.4;      /* of the other leaves' petioles: a shorter tube is none */
 static const double PETIOLES_LEAST = 2; /* median length of the others' tubes in R: else the plant has no petioles */
-static const double BARE_LEAST = 2;     /* a stretch without feet before the end, in R: the petiole */
-static const double STUB = 0.7;         /* a side tube without blade this long (in R) is a foot as well */
+static const double PETIOLES_FOR_KINK = 0.6; /* the same where the path turns */
+static const double INTERNODE_LEAST = 2;     /* the stem goes on beyond a turn with leaves on it, in R */
+enum { ROUNDS = 3 };
+static const double BARE_LEAST = 2;   /* a stretch without feet before the end, in R: the petiole */
+static const double STUB = 0.7;       /* a side tube without blade this long (in R) is a foot as well */
 static const double CUT_BEYOND = 0.3; /* the cut is so far (in R) beyond the last foot when nothing tells better, ... */
 static const double CUT_END = 1.25;   /* ... and so far before the path's end, where its direction is not known */
 static const double BEND = 0.35;      /* kinks (radians) and ... */
@@ -78,10 +81,61 @@ static size_t best_cut(const plm_stem_path *stem, double from, double to, double
     return best;
 }
 
-plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
+/* The last foot before the end. */
+static double last_foot(const plm_side_groups *groups, double end, double stub)
+{
+    double last = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (group->has_foot && group->along < end && (group->blades || group->tube_length >= stub))
+            last = fmax(last, group->along);
+    }
+    return last;
+}
+
+/* Leaves at least whose feet stand beyond a place: blades without petioles of their own may be leaflets of one. */
+static size_t leaves_beyond(const plm_side_groups *groups, double place, double least)
+{
+    size_t count = 0, sessile = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (!group->has_foot || !group->blades || group->along <= place) continue;
+        if (tube_of_blade(group) >= least)
+            count++;
+        else
+            sessile = 1;
+    }
+    return count + sessile;
+}
+
+/* Takes the path out of a petiole that it turned into beyond the last foot. A leaf beyond the turn beside the one that the
+ * path ran into must stand on the straight continuation. */
+static plm_status leave_petiole(plm_sketch *sketch, bool *done, plm_error *error)
 {
     plm_stem_path *stem = &sketch->stem;
-    if (!stem->count) return PLM_OK;
+    plm_side_groups groups = {0};
+    *done = false;
+    plm_status status = plm_side_groups_find(sketch, &groups, error);
+    if (status != PLM_OK) return status;
+    const double R = sketch->scale.radius, end = stem->along[stem->count - 1] - END_REACH * R;
+    float *value = plm_alloc(groups.count + 1, sizeof *value, error);
+    if (!value) status = PLM_E_MEMORY;
+    const double typical = value ? typical_petiole(&groups, end, value) : 0;
+    const double last = last_foot(&groups, end, STUB * R);
+    const size_t kink = typical >= PETIOLES_FOR_KINK * R && last > 0 ? plm_stem_kink(stem, last) : 0;
+    if (kink) {
+        const size_t leaves = leaves_beyond(&groups, stem->along[kink] + 0.5 * R, SESSILE * typical);
+        status = plm_stem_straighten(sketch, kink, leaves > 1 ? INTERNODE_LEAST * R : 0, done, error);
+    }
+    if (status == PLM_OK && *done) plm_sketch_mark_stem(sketch);
+    plm_free(value);
+    plm_side_groups_free(&groups);
+    return status;
+}
+
+static plm_status leave_sessile_end(plm_sketch *sketch, plm_error *error)
+{
+    plm_stem_path *stem = &sketch->stem;
     plm_side_groups groups = {0};
     plm_status status = plm_side_groups_find(sketch, &groups, error);
     if (status != PLM_OK) return status;
@@ -110,4 +164,16 @@ plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
     plm_free(value);
     plm_side_groups_free(&groups);
     return status;
+}
+
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
+{
+    if (!sketch->stem.count) return PLM_OK;
+    bool again = true, has_left = false;
+    for (int round = 0; round < ROUNDS && again; round++) {
+        const plm_status status = leave_petiole(sketch, &again, error);
+        if (status != PLM_OK) return status;
+        has_left |= again;
+    }
+    return has_left ? PLM_OK : leave_sessile_end(sketch, error);
 }

@@ -21,4 +21,12 @@ void plm_stem_smooth(plm_stem_path *stem, size_t reach, double (*buffer)[3]);
 /** Sharpens the line and the radii by robust circles. radius[] must hold a guess within some 40 %. */
 plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error);
 
+/** The first node from arc length `from` on at which the path turns as it does where a way leaves the stem for a petiole;
+ * 0 where there is none. */
+size_t plm_stem_kink(const plm_stem_path *stem, double from);
+
+/** Replaces what the stem's path does from node kink on by its straight continuation, as far as tube points lie along it:
+ * only where that is at least so long (metres), which *done says. PLM_E_MEMORY. */
+plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bool *done, plm_error *error);
+
 #endif

@@ -19,7 +19,7 @@ static const double STEP = 0.25;              /* nodes, in R */
 static const double WINDOW = 1;               /* half window of centring and of the radius, in R */
 static const double REACH = 2;                /* points within so many stem radii centre the path */
 static const double MARGIN = 1.1;             /* points within so many radii (plus sigma) are stem */
-static double MARGIN_BLADE = 1.15;            /* the same for points that look like blade */
+static const double MARGIN_BLADE = 1.15;      /* the same for points that look like blade */
 enum { CENTRING_ROUNDS = 3 };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */

@@ -62,6 +62,54 @@ static void make_plant(known_plant *plant, double noise, double unit)
     }
 }
 
+/* Three leaves, two with short petioles, the topmost one's long, nearly as thick as the stem, and rising steeply beside the stem's bare tip: the
+ * stem ends at that tip and no petiole point above the node is called stem. */
+static void the_stem_ends_where_its_way_turns_into_the_last_petiole(void **unused)
+{
+    (void)unused;
+    static known_plant plant;
+    plm_error error = {0};
+    uint64_t state = 11;
+    plm_segmentation found;
+    assert_ok(plm_cloud_create(POINTS, 0, &plant.cloud, &error));
+    for (size_t i = 0; i < POINTS; i++) {
+        const double pick = test_uniform(&state), height[3] = {0.05, 0.09, 0.13}, rise[3] = {0.5, 0.5, 1.4};
+        const int k = (int)(test_uniform(&state) * 3);
+        const double heading = 2.4 * k, out[2] = {cos(heading), sin(heading)}, base[3] = {0}, top[3] = {0, 0, 0.134};
+        const double foot[3] = {0, 0, height[k]}, length = (k < 2 ? 0.015 : 0.04) / sqrt(1 + rise[k] * rise[k]);
+        const double head[3] = {length * out[0], length * out[1], height[k] + length * rise[k]};
+        float *p = plant.cloud.xyz[i];
+        if (pick < 0.15) {
+            on_tube(base, top, 0.002, &state, p);
+            plant.label[i] = PLM_LABEL_STEM;
+        } else if (pick < 0.25) {
+            on_tube(foot, head, 0.0017, &state, p);
+            plant.label[i] = PLM_LABEL_PETIOLE;
+        } else {
+            const double r = 0.03 * sqrt(test_uniform(&state)), angle = 2 * PLM_PI * test_uniform(&state);
+            const double along = 0.03 + r * cos(angle), across = r * sin(angle);
+            p[0] = (float)(head[0] + along * out[0] - across * out[1]);
+            p[1] = (float)(head[1] + along * out[1] + across * out[0]);
+            p[2] = (float)(head[2] + 0.2 * along);
+            plant.label[i] = PLM_LABEL_LEAF;
+        }
+        for (int axis = 0; axis < 3; axis++) p[axis] += (float)(0.0003 * test_normal(&state));
+    }
+    assert_ok(plm_segment(&plant.cloud, NULL, NULL, NULL, &found, &error));
+    assert_int_equal(found.leaf_count, 3);
+    size_t right[2] = {0}, all[2] = {0};
+    for (size_t i = 0; i < POINTS; i++) {
+        const bool is_stem = plant.label[i] == PLM_LABEL_STEM && plant.cloud.xyz[i][2] > 0.1;
+        if (!is_stem && (plant.label[i] != PLM_LABEL_PETIOLE || plant.cloud.xyz[i][2] < 0.14)) continue;
+        all[is_stem]++;
+        right[is_stem] += found.label[i] == plant.label[i];
+    }
+    assert_true((double)right[1] > 0.9 * (double)all[1]);
+    assert_true((double)right[0] > 0.9 * (double)all[0]);
+    plm_segmentation_free(&found);
+    plm_cloud_free(&plant.cloud);
+}
+
 static void check_plant(double noise, double unit)
 {
     static known_plant plant;
@@ -192,6 +240,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(organs_of_a_simple_plant_are_found_and_numbered),
+        cmocka_unit_test(the_stem_ends_where_its_way_turns_into_the_last_petiole),
         cmocka_unit_test(organs_are_found_in_noise),
         cmocka_unit_test(the_unit_does_not_matter),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
