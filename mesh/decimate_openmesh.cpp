@@ -121,12 +121,12 @@ extern "C" plm_status plm_mesh_decimate(const plm_mesh *mesh, size_t triangles, 
             if (mesh->triangle[i][k] >= mesh->vertex_count)
                 return plm_fail(error, PLM_E_ARGUMENT, "triangle %zu names vertex %u of a mesh of %zu vertices", i,
                                 mesh->triangle[i][k], mesh->vertex_count);
-    /* A collapse takes some ten microseconds: meshes far too fine are made coarser in linear time first. */
+    /* A collapse takes some ten microseconds: large meshes that are far too fine are made coarser in linear time first. */
     const size_t quick = 20000;
-    if (mesh->triangle_count <= quick || mesh->triangle_count <= 8 * triangles)
+    if (mesh->triangle_count <= quick || mesh->triangle_count <= 2 * triangles)
         return collapse(mesh, triangles, out, error);
     plm_mesh coarse = {};
-    plm_status status = plm_mesh_cluster(mesh, 4 * triangles, &coarse, error);
+    plm_status status = plm_mesh_cluster(mesh, 2 * triangles, &coarse, error);
     if (status == PLM_OK) status = collapse(&coarse, triangles, out, error);
     plm_mesh_free(&coarse);
     return status;

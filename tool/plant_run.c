@@ -107,7 +107,7 @@ static bool has_time_for(plant_state *state, plm_cost cost, const char *what)
     const size_t size =
         plm_cost_size(cost, measurement->cloud.count, measurement->cloud.count, measurement->leaves.triangle_count);
     const double predicted = plm_pace_predict(&state->done.pace, (int)cost, size);
-    const bool has = file_margin * predicted <= plm_anytime_left(&state->anytime);
+    const bool has = file_margin * predicted <= plm_anytime_left(&state->anytime, &state->done.pace);
     if (!has) leave_out(state, what);
     return has;
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const double usable = 0.97;   /* of the time; the rest is for what no model knows */
-static const double tables = 0.004;  /* seconds for the tables */
+static const double tables = 0.008;  /* seconds for the tables on the reference machine */
 static const double for_files = 0.4; /* of the time left behind the first pass: files are given no more */
 static const double short_of = 1.1;  /* points asked for over those that the errors' power says suffice */
 static const double least_step = 1.5, most_step = 4; /* times the points of the last pass, towards a target */
@@ -24,10 +24,10 @@ typedef struct anytime_job {
     bool *chosen, *in_pass; /* rows of the trait table: asked for; of a pass */
     size_t trait_count;
     plm_schedule schedule;
-    bool has_base;
-    plm_pass base; /* the largest complete pass over organs; else the first */
+    bool has_base, has_organ_rows; /* the base has rows of organs, be they late */
+    plm_pass base;                 /* the largest complete pass over organs; else the first */
     bool has_plant;
-    size_t plant_count; /* values of the plant's group, of the largest complete pass over it */
+    size_t plant_count; /* values of the plant's group, of the largest complete pass over it; else of the first */
     plm_trait_value *plant;
     plm_mesh hull;
 } anytime_job;
@@ -37,10 +37,11 @@ static double now_of(const plm_anytime_options *anytime)
     return anytime->clock ? anytime->clock(anytime->clock_user) : plm_seconds_now();
 }
 
-double plm_anytime_left(const plm_anytime_options *anytime)
+double plm_anytime_left(const plm_anytime_options *anytime, const plm_pace *pace)
 {
     if (!(anytime->seconds > 0)) return INFINITY;
-    return anytime->begin + usable * anytime->seconds - tables - now_of(anytime);
+    const double for_tables = tables * fmax(1, plm_pace_speed(pace));
+    return anytime->begin + usable * anytime->seconds - for_tables - now_of(anytime);
 }
 
 /* ---- What passes gave -------------------------------------------------------------------------------------------- */
@@ -92,8 +93,8 @@ static void note_group(anytime_job *job, plm_group group, const plm_trait_value 
     job->record->points[group] = pass->work.count;
 }
 
-/* The plant's group of a complete pass: copies the values, takes the hull. */
-static plm_status take_plant(anytime_job *job, plm_pass *pass, plm_error *error)
+/* The plant's group of a pass, complete or the first: copies the values, takes the hull. */
+static plm_status take_plant(anytime_job *job, plm_pass *pass, bool is_complete, plm_error *error)
 {
     plm_measurement *draft = &pass->draft;
     plm_trait_value *values = plm_alloc(draft->value_count, sizeof *values, error);
@@ -101,7 +102,7 @@ static plm_status take_plant(anytime_job *job, plm_pass *pass, plm_error *error)
     size_t count = 0;
     for (size_t i = 0; i < draft->value_count; i++)
         if (plm_group_of(draft->value[i].trait) == PLM_GROUP_PLANT) values[count++] = draft->value[i];
-    note_group(job, PLM_GROUP_PLANT, job->plant, job->plant_count, pass);
+    if (is_complete) note_group(job, PLM_GROUP_PLANT, job->plant, job->plant_count, pass);
     plm_free(job->plant);
     job->plant = values;
     job->plant_count = count;
@@ -118,12 +119,16 @@ static plm_status take_plant(anytime_job *job, plm_pass *pass, plm_error *error)
 static plm_status take_pass(anytime_job *job, const plm_pass_record *record, plm_pass *pass, plm_error *error)
 {
     plm_status status = PLM_OK;
-    if (record->is_complete[PLM_GROUP_PLANT]) status = take_plant(job, pass, error);
+    const bool is_complete = record->is_complete[PLM_GROUP_PLANT];
+    if (is_complete || (record->has_group[PLM_GROUP_PLANT] && !job->has_plant))
+        status = take_plant(job, pass, is_complete, error);
     const bool has_organs = record->is_complete[PLM_GROUP_ORGANS];
     if (status == PLM_OK && has_organs)
         note_group(job, PLM_GROUP_ORGANS, job->base.draft.value, job->base.draft.value_count, pass);
     const bool only_plant = !job->schedule.group[PLM_GROUP_ORGANS].is_wanted && record->is_complete[PLM_GROUP_PLANT];
-    if (status == PLM_OK && (has_organs || only_plant || !job->has_base)) {
+    const bool first_rows = record->has_group[PLM_GROUP_ORGANS] && !job->has_organ_rows;
+    job->has_organ_rows |= record->has_group[PLM_GROUP_ORGANS];
+    if (status == PLM_OK && (has_organs || only_plant || first_rows || !job->has_base)) {
         plm_pass_free(&job->base);
         job->base = *pass;
         job->has_base = true;
@@ -161,7 +166,8 @@ static plm_status run_pass(anytime_job *job, const plm_next_pass *next, const bo
 
 static plm_status run_first(anytime_job *job, const bool *chosen, plm_error *error)
 {
-    const plm_next_pass first = plm_schedule_first(&job->schedule, &job->record->pace, plm_anytime_left(job->anytime));
+    const plm_next_pass first =
+        plm_schedule_first(&job->schedule, &job->record->pace, plm_anytime_left(job->anytime, &job->record->pace));
     return run_pass(job, &first, chosen, error);
 }
 
@@ -239,20 +245,29 @@ static bool next_in_time(anytime_job *job, double left, plm_next_pass *next)
     return true;
 }
 
+/* Organs that no pass came to get their rows, which say so: a pass whose time is over. */
+static plm_status tell_of_organs(anytime_job *job, plm_error *error)
+{
+    if (!job->schedule.group[PLM_GROUP_ORGANS].is_wanted || job->has_organ_rows) return PLM_OK;
+    const plm_next_pass none = {.has_group = {false, true}, .points = 1};
+    job->deadline.at = -INFINITY;
+    return run_pass(job, &none, job->chosen, error);
+}
+
 /* Until no pass fits any more, or is worth it. */
 static plm_status use_the_time(anytime_job *job, plm_error *error)
 {
     plm_status status = run_first(job, job->chosen, error);
-    while (status == PLM_OK && job->record->pass_count < PLM_MOST_PASSES) {
+    while (status == PLM_OK && job->record->pass_count + 1 < PLM_MOST_PASSES) {
         plm_next_pass next;
         check_targets(job);
-        const double left = plm_anytime_left(job->anytime);
+        const double left = plm_anytime_left(job->anytime, &job->record->pace);
         const double kept = time_for_outputs(job, left);
         if (are_reached(job) || !next_in_time(job, left - kept, &next)) break;
         job->deadline.at = now_of(job->anytime) + left - kept;
         status = run_pass(job, &next, job->chosen, error);
     }
-    return status;
+    return status == PLM_OK ? tell_of_organs(job, error) : status;
 }
 
 /* Until the targets are reached, looking at their traits alone, or until all points are; then all traits over as many. */
@@ -320,7 +335,7 @@ static void forget_passes(anytime_job *job)
     plm_mesh_free(&job->hull);
     job->plant = NULL;
     job->plant_count = 0;
-    job->has_plant = job->has_base = false;
+    job->has_plant = job->has_base = job->has_organ_rows = false;
 }
 
 static plm_status reach_targets_then_all(anytime_job *job, plm_error *error)
@@ -387,8 +402,8 @@ static plm_status finish(anytime_job *job, plm_cloud *cloud, plm_measurement *me
     if (job->anytime->outputs & 1U << PLM_COST_CLOUD_FILE)
         needed += plm_pace_predict(&record->pace, PLM_COST_CLOUD_FILE, all);
     const bool is_all_seen = job->base.work.count == all;
-    record->has_all_points =
-        is_all_seen || (job->anytime->outputs & 1U << PLM_COST_LABELS && needed < plm_anytime_left(job->anytime));
+    record->has_all_points = is_all_seen || (job->anytime->outputs & 1U << PLM_COST_LABELS &&
+                                             needed < plm_anytime_left(job->anytime, &record->pace));
     const double begin = now_of(job->anytime);
     if (status == PLM_OK) status = plm_pass_finish(&job->base, cloud, record->has_all_points, measurement, error);
     if (record->has_all_points && !is_all_seen)
@@ -402,7 +417,7 @@ plm_status plm_measure_anytime(plm_cloud *cloud, const plm_measure_options *opti
     plm_cloud taken = *cloud;
     *cloud = (plm_cloud){0};
     *record = (plm_anytime_record){0};
-    const double left = plm_anytime_left(anytime);
+    const double left = plm_anytime_left(anytime, &record->pace);
     anytime_job job = {.options = *options,
                        .deadline = {now_of(anytime) + left, anytime->clock, anytime->clock_user},
                        .anytime = anytime,

@@ -45,7 +45,7 @@ typedef struct plm_anytime_record {
 plm_status plm_measure_anytime(plm_cloud *cloud, const plm_measure_options *options, const plm_anytime_options *anytime,
                                plm_measurement *measurement, plm_anytime_record *record, plm_error *error);
 
-/** Seconds that are left of the time; INFINITY without one. */
-double plm_anytime_left(const plm_anytime_options *anytime);
+/** Seconds that are left of the time, less those for the tables; INFINITY without one. */
+double plm_anytime_left(const plm_anytime_options *anytime, const plm_pace *pace);
 
 #endif

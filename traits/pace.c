@@ -54,6 +54,11 @@ static double by_reference(int cost, double size)
     return reference[cost].seconds * growth(cost, reference[cost].power, reference[cost].unit, size);
 }
 
+double plm_pace_speed(const plm_pace *pace)
+{
+    return pace->reference > 0 ? pace->seconds / pace->reference : 1;
+}
+
 void plm_pace_note(plm_pace *pace, int cost, size_t size, double seconds)
 {
     struct plm_pace_note *note = &pace->note[cost];
@@ -72,8 +77,7 @@ double plm_pace_predict(const plm_pace *pace, int cost, size_t size)
 {
     const struct plm_pace_note *note = &pace->note[cost];
     if (size == 0) return 0;
-    const double speed = pace->reference > 0 ? pace->seconds / pace->reference : 1;
-    const double usual = speed * by_reference(cost, (double)size);
+    const double usual = plm_pace_speed(pace) * by_reference(cost, (double)size);
     if (!(note->size > 0)) return usual;
     const double power = note->power > 0 ? note->power : reference[cost].power;
     return fmax(note->seconds * growth(cost, power, note->size, (double)size), least_share * usual);

@@ -28,6 +28,9 @@ typedef struct plm_pace {
 /** The size that a cost goes by: points of the whole cloud, points looked at, triangles of leaves. */
 size_t plm_cost_size(plm_cost cost, size_t all, size_t used, size_t triangles);
 
+/** How many times as long as on the reference machine what was noted took; 1 where nothing was. */
+double plm_pace_speed(const plm_pace *pace);
+
 /** Learns that a cost (a plm_stage_id or plm_cost) of this size took so long. */
 void plm_pace_note(plm_pace *pace, int cost, size_t size, double seconds);
 

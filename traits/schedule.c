@@ -53,6 +53,9 @@ plm_next_pass plm_schedule_first(const plm_schedule *schedule, const plm_pace *p
     const size_t least = schedule->all < FEWEST_POINTS ? schedule->all : FEWEST_POINTS;
     next.points = points_that_fit(schedule, pace, next.has_group, first_share * seconds_left, least, most);
     if (next.points == 0) next.points = least;
+    const bool both = next.has_group[PLM_GROUP_PLANT] && next.has_group[PLM_GROUP_ORGANS];
+    if (both && plm_schedule_seconds(schedule, pace, next.has_group, least) > seconds_left)
+        next.has_group[PLM_GROUP_ORGANS] = false; /* rather the plant alone than nothing */
     next.predicted = plm_schedule_seconds(schedule, pace, next.has_group, next.points);
     return next;
 }

@@ -36,7 +36,8 @@ typedef struct plm_next_pass {
 /** The power of errors where nothing is known: they go with the spacing of points. */
 #define PLM_USUAL_POWER 0.5
 
-/** The first pass: all traits over few points, from which the times of larger ones are told. */
+/** The first pass: all traits over few points, from which the times of larger ones are told; where that would not end in time, the
+ * plant's alone. */
 plm_next_pass plm_schedule_first(const plm_schedule *schedule, const plm_pace *pace, double seconds_left);
 
 /** The pass that lowers the errors most within the seconds left; false: none is worth its time, or fits. */
