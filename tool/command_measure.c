@@ -66,7 +66,8 @@ static const plm_option options[] = {
      .maximum = 1},
     {.name = "effort",
      .argument = "fast|balanced|precise",
-     .help = "points that are looked at, a random choice of larger clouds: 50 000, 400 000, or all (default: balanced)",
+     .help =
+         "points that are looked at, a random choice of larger clouds: 50 000, 200 000 or 400 000 (default: balanced)",
      .kind = PLM_OPTION_CHOICE,
      .offset = offsetof(measure_settings, effort)},
     {.name = "points",

@@ -155,11 +155,10 @@ static plm_status options_of(const child_task *task, plm_measure_options *option
     measure_settings settings = measure_setting_defaults();
     settings.reading = task->study->settings->reading;
     settings.traits = task->traits;
-    settings.effort = PLM_EFFORT_PRECISE;
     settings.alpha = task->alpha;
     if (task->setting && task->setting->neighbours) settings.neighbours = task->setting->neighbours;
     const plm_status status = measure_options_of(&settings, options, error);
-    if (status == PLM_OK && task->setting) options->points = task->setting->points;
+    if (status == PLM_OK) options->points = task->setting && task->setting->points ? task->setting->points : SIZE_MAX;
     return status;
 }
 

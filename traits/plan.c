@@ -54,7 +54,7 @@ void plm_measure_defaults(plm_measure_options *options)
 size_t plm_point_budget(const plm_measure_options *options)
 {
     static const size_t by_effort[] = {
-        [PLM_EFFORT_FAST] = 50000, [PLM_EFFORT_BALANCED] = 400000, [PLM_EFFORT_PRECISE] = 0};
+        [PLM_EFFORT_FAST] = 50000, [PLM_EFFORT_BALANCED] = 200000, [PLM_EFFORT_PRECISE] = 400000};
     return options->points ? options->points : by_effort[options->effort];
 }
 

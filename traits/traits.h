@@ -93,8 +93,8 @@ typedef plm_status plm_light_function(const plm_mesh *mesh, const int32_t *face_
                                       uint64_t seed, double *group_power, double *group_std_error, double *power,
                                       double *std_error, plm_error *error);
 
-/** How much of a large cloud is looked at: about 50 000 points, 400 000, or all. What is left out is
- * random: the spacing grows, and errors and standard errors with it. */
+/** How much of a large cloud is looked at: about 50 000 points, 200 000, or 400 000 (docs/tradeoff.md: more made nothing better,
+ * spacings far below the noise say nothing new). What is left out is random. */
 typedef enum plm_effort { PLM_EFFORT_FAST = 0, PLM_EFFORT_BALANCED, PLM_EFFORT_PRECISE } plm_effort;
 
 /** Options of a measurement. Fill with plm_measure_defaults first. */
