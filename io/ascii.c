@@ -202,13 +202,12 @@ static plm_status cut_chunks(const plm_bytes *bytes, size_t begin, ascii_work *w
 }
 
 /* Counts the rows of all chunks; gives how many there are, and the number of the line behind the last. */
-static uint64_t count_rows(ascii_work *work, const plm_bytes *bytes, size_t first_line, uint64_t *last_line)
+static uint64_t count_rows(ascii_work *work, size_t first_line, uint64_t *last_line)
 {
 #pragma omp parallel for schedule(dynamic) if (work->chunk_count > 1)
     for (size_t i = 0; i < work->chunk_count; i++) {
         chunk *piece = &work->chunks[i];
         count_chunk(work->ascii, piece);
-        plm_bytes_drop(bytes, (const unsigned char *)piece->begin, (size_t)(piece->end - piece->begin));
     }
     uint64_t rows = 0, line = first_line;
     for (size_t i = 0; i < work->chunk_count; i++) {
@@ -272,7 +271,8 @@ static plm_status parse_rows(ascii_work *work, const plm_bytes *bytes, plm_error
     for (size_t i = 0; i < work->chunk_count; i++) {
         chunk *piece = &work->chunks[i];
         parse_chunk(work, piece);
-        plm_bytes_drop(bytes, (const unsigned char *)piece->begin, (size_t)(piece->end - piece->begin));
+        if (piece->fault.kind == FAULT_NONE) /* else the message shows what stands there */
+            plm_bytes_drop(bytes, (const unsigned char *)piece->begin, (size_t)(piece->end - piece->begin));
     }
     for (size_t i = 0; i < work->chunk_count; i++)
         if (work->chunks[i].fault.kind != FAULT_NONE) return report_fault(work, bytes, &work->chunks[i], error);
@@ -300,7 +300,7 @@ plm_status plm_ascii_read(const plm_bytes *bytes, const plm_ascii *ascii, const 
     if (status == PLM_OK) status = cut_chunks(bytes, place->begin, &work, error);
     if (status == PLM_OK) {
         uint64_t line;
-        const uint64_t found = count_rows(&work, bytes, place->line, &line);
+        const uint64_t found = count_rows(&work, place->line, &line);
         const uint64_t rows = found > place->skip ? found - place->skip : 0;
         work.begin = place->skip;
         work.end = work.begin + (place->rows < rows ? place->rows : rows);

@@ -114,7 +114,7 @@ static size_t span_rows(const conversion *work, size_t span)
     return left < SPAN ? left : SPAN;
 }
 
-/* The pages of a span are not needed again soon. Only true of columns that lie in the file itself. */
+/* The pages of a span are not needed again. Only true of columns that lie in the file itself. */
 static void drop_span(const conversion *work, size_t span)
 {
     const plm_column *x = work->roles->column[PLM_ROLE_X];
@@ -152,7 +152,6 @@ static void survey_span(const conversion *work, size_t span)
         }
     }
     if (work->roles->column[PLM_ROLE_RED] && !is_byte_colour(work->roles)) survey_colours(work, span, &rows, &survey);
-    drop_span(work, span);
     work->spans[span] = survey;
 }
 
@@ -284,7 +283,7 @@ static void convert_span(const conversion *work, size_t span)
         if (to.label) store_labels(work, &rows, first, at, survey);
         at += rows.kept_count * work->points_a_row;
     }
-    drop_span(work, span);
+    if (survey->bad_label == SIZE_MAX) drop_span(work, span); /* else the message shows the label */
 }
 
 static span_survey survey_all(const conversion *work)
