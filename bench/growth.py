@@ -26,7 +26,7 @@ DECADES = 2
 
 def sizes(least, most):
     steps = round(3 * math.log10(most / least))
-    return [round(least * (most / least) ** (i / steps)) for i in range(steps + 1)] if steps > 0 else [most]
+    return [round(least * (most / least) ** (i / steps)) for i in range(steps + 1)] if steps > 0 else [round(most)]
 
 
 def stages_of(options, points, folder):
