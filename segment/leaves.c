@@ -8,9 +8,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double STRAP_TUBE = 0.85;    /* share of tube at a foot: less is no petiole, and ... */
-static const double STRAP_RADIUS = 0.9;   /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
-static const double STRAP_EVIDENCE = 0.5; /* both weigh half, by the area of the leaves; more than this: strap leaves */
+static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
+static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
+static const double STRAP_EVIDENCE =
+    0.5; /* both weigh half, by the area of the leaves; more than this: strap leaves, ... */
+static const double STRAP_RISING = 0.36;  /* ... or than this where larger balls find more tubes: the folds of straps */
 static const double COMPOUND_SHARE = 0.4; /* of the leaves with three blades or more: the plant has compound leaves */
 
 static double strap_evidence(const plm_sketch *sketch, const plm_side_group *group)
@@ -54,7 +56,7 @@ static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *gr
     if (!leafy) return sketch->scale.has_tubes ? PLM_HABIT_BARE_STEM : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->scale.has_tubes) return leafy > 1 ? PLM_HABIT_HEAD : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->stem.count) return PLM_HABIT_ROSETTE;
-    if (strap > STRAP_EVIDENCE * area) return PLM_HABIT_STRAP;
+    if (strap > (sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE) * area) return PLM_HABIT_STRAP;
     return (double)compound >= COMPOUND_SHARE * (double)leafy ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
 }
 
@@ -139,7 +141,8 @@ static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
 {
     double *along = NULL;
     size_t leaves = 0;
-    plm_status status = plm_strap_leaves(sketch, &along, &leaves, error);
+    plm_status status = plm_sketch_upright_stem(sketch, error);
+    if (status == PLM_OK) status = plm_strap_leaves(sketch, &along, &leaves, error);
     if (status == PLM_OK) status = number_leaves(sketch, along, leaves, error);
     plm_free(along);
     return status;

@@ -18,8 +18,9 @@ static const double TUBE_LINEARITY = 0.45; /* above: long */
 static const double TUBE_ROUNDNESS = 0.6;  /* above: round, not flat */
 static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the peak: folded straps peak later */
 static const double NOISE_RADII = 10;      /* R in sigmas, at least: a noisier ball is round whatever it holds */
-static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
-static const double TUBE_LEAST = 0.17;     /* tubes shorter than this share of the size are none */
+static const double NOISE_BALL = 5; /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
+static const double TUBE_THICKNESS = 0.05;            /* radius in R, at least: thinner is a line of few points */
+static const double TUBE_LEAST = 0.17;                /* tubes shorter than this share of the size are none */
 static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
 
@@ -139,10 +140,12 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     }
     int chosen = 0;
     while (series[chosen].ring_length < PEAK_SHARE * ring_peak) chosen++;
-    out.noise = series[0].flat_noise;
+    int wide = 0;
+    while (wide + 1 < trials && series[wide].radius < NOISE_BALL * series[wide].flat_noise) wide++;
+    out.noise = series[wide].flat_noise;
     trial best = series[chosen];
-    if (best.radius < NOISE_RADII * out.noise && NOISE_RADII * out.noise < last)
-        status = try_radius(xyz, count, NOISE_RADII * out.noise, &best, error);
+    const double least = NOISE_RADII * series[0].flat_noise;
+    if (best.radius < least && least < last) status = try_radius(xyz, count, least, &best, error);
     out.radius = best.radius;
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;

@@ -50,6 +50,9 @@ bool plm_leaves_look_like_tubes(const plm_sketch *sketch);
 /** Finds the main stem's centre line and marks its points. No stem: the path stays empty. */
 plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
 
+/** The same for plants whose leaves may be as thick as the stem: the straightest way up from the base. */
+plm_status plm_sketch_upright_stem(plm_sketch *sketch, plm_error *error);
+
 /** Takes back what of the path is the petiole of the topmost leaf. */
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error);
 

@@ -18,6 +18,12 @@ double plm_stem_nearest(const plm_stem_path *stem, const float xyz[3], plm_stem_
  * scratch, stem->count rows. */
 void plm_stem_smooth(plm_stem_path *stem, size_t reach, double (*buffer)[3]);
 
+/** Writes sketch->stem, in place of what it held, and is_stem: the way from base to top by parent[] (one a working point),
+ * centred and measured. A way that hardly rises is none: then the sketch stays. tapers: the stem is nowhere
+ * thicker than at its foot. */
+plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t base, uint32_t top, bool tapers,
+                          plm_error *error);
+
 /** Sharpens the line and the radii by robust circles. radius[] must hold a guess within some 40 %. */
 plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error);
 

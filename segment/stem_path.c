@@ -1,7 +1,6 @@
 /* segment/stem_path.c: the main stem: the cheapest way from the base to the highest thick tube, where thick tubes are
  * cheap and blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
 #include "cloud/linear.h"
-#include "segment/core.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
@@ -14,6 +13,7 @@ static const double THIN_WAY = 0.6;  /* of the radius on the way so far (over ME
 static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at most to this share of the lower stem's */
 static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
 static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
+static const double FOOT_SHARE = 0.2;         /* of the path: the foot, which is bare */
 static const double RISE_LEAST = 0.2;         /* of the size: a plant that rises less has no stem */
 static const double STEP = 0.25;              /* nodes, in R */
 static const double WINDOW = 1;               /* half window of centring and of the radius, in R */
@@ -335,52 +335,70 @@ void plm_sketch_mark_stem(plm_sketch *sketch)
     }
 }
 
+/* No node is thicker than the lowest ones are in the middle: feet that wrap the stem and blades that rise along it are. */
+static plm_status cap_radius(plm_stem_path *stem, plm_error *error)
+{
+    const size_t lowest = (size_t)(FOOT_SHARE * (double)stem->count) + 1;
+    float *value = plm_alloc(lowest, sizeof *value, error);
+    if (!value) return PLM_E_MEMORY;
+    for (size_t n = 0; n < lowest; n++) value[n] = (float)stem->radius[n];
+    const double most = plm_quantile(value, lowest, 0.75);
+    for (size_t n = 0; n < stem->count; n++) stem->radius[n] = fmin(stem->radius[n], most);
+    plm_free(value);
+    return PLM_OK;
+}
+
+plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t base, uint32_t top, bool tapers,
+                          plm_error *error)
+{
+    plm_stem_path stem = {0};
+    size_t length = 0;
+    if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) return PLM_OK;
+    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) length++;
+    uint32_t *chain = plm_alloc(length, sizeof *chain, error);
+    if (!chain) return PLM_E_MEMORY;
+    size_t k = length;
+    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) chain[--k] = i;
+    plm_status status = resample(sketch, chain, length, &stem, error);
+    if (status == PLM_OK) status = refine(sketch, &stem, error);
+    if (status == PLM_OK && tapers) status = cap_radius(&stem, error);
+    if (status == PLM_OK) status = cut_thin_end(sketch, &stem, error);
+    if (status == PLM_OK) status = plm_stem_fit(sketch, &stem, error);
+    if (status == PLM_OK && tapers) status = cap_radius(&stem, error);
+    if (status == PLM_OK) {
+        const plm_stem_path old = sketch->stem;
+        sketch->stem = stem;
+        stem = old;
+        plm_sketch_mark_stem(sketch);
+    }
+    plm_free(chain);
+    plm_free(stem.node);
+    plm_free(stem.radius);
+    plm_free(stem.along);
+    return status;
+}
+
 plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
 {
     const size_t count = sketch->working.count;
+    if (!sketch->scale.has_tubes) return PLM_OK;
+    if (plm_leaves_look_like_tubes(sketch)) return plm_sketch_upright_stem(sketch, error);
     plm_scratch scratch = {.error = error};
     bool *candidate = plm_scratch_take(&scratch, count, sizeof *candidate);
     tube_ways ways = {.distance = plm_scratch_take(&scratch, count, sizeof *ways.distance),
                       .parent = plm_scratch_take(&scratch, count, sizeof *ways.parent),
                       .order = plm_scratch_take(&scratch, count, sizeof *ways.order)};
-    uint32_t *chain = plm_scratch_take(&scratch, count, sizeof *chain);
-    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
-    plm_stem_path stem = {0};
-    if (status != PLM_OK || !sketch->scale.has_tubes) goto done;
-    status = find_candidates(sketch, candidate, error);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : find_candidates(sketch, candidate, error);
     if (status != PLM_OK) goto done;
-    uint32_t base = extreme_point(sketch, candidate, false), top = UINT32_MAX;
-    const bool by_posture = plm_leaves_look_like_tubes(sketch);
-    if (by_posture) status = plm_upright_ends(sketch, &base, &top, error);
-    if (status != PLM_OK || base == UINT32_MAX) goto done;
+    const uint32_t base = extreme_point(sketch, candidate, false);
+    if (base == UINT32_MAX) goto done;
     status = tube_walk(sketch, base, &ways, error);
     if (status != PLM_OK) goto done;
     for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(ways.distance[i]);
-    if (!by_posture) {
-        top = extreme_point(sketch, candidate, true);
-        status = thickest_way(sketch, &ways, &top, error);
-    }
-    if (status != PLM_OK) goto done;
-    if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) goto done;
-    size_t length = 0;
-    for (uint32_t i = top; i != UINT32_MAX; i = ways.parent[i]) chain[length++] = i;
-    for (size_t k = 0; k < length / 2; k++) {
-        const uint32_t other = chain[k];
-        chain[k] = chain[length - 1 - k];
-        chain[length - 1 - k] = other;
-    }
-    status = resample(sketch, chain, length, &stem, error);
-    if (status == PLM_OK) status = refine(sketch, &stem, error);
-    if (status == PLM_OK) status = cut_thin_end(sketch, &stem, error);
-    if (status == PLM_OK) status = plm_stem_fit(sketch, &stem, error);
-    if (status != PLM_OK) goto done;
-    sketch->stem = stem;
-    stem = (plm_stem_path){0};
-    plm_sketch_mark_stem(sketch);
+    uint32_t top = extreme_point(sketch, candidate, true);
+    status = thickest_way(sketch, &ways, &top, error);
+    if (status == PLM_OK) status = plm_stem_trace(sketch, ways.parent, base, top, false, error);
 done:
-    plm_free(stem.node);
-    plm_free(stem.radius);
-    plm_free(stem.along);
     plm_scratch_free(&scratch, NULL);
     return status;
 }

@@ -4,12 +4,13 @@
 
 #include "segment/core.h"
 
-enum { STEM = 200, LEAF = 400, LEAVES = 3, COUNT_ALL = STEM + LEAVES * LEAF };
+enum { STEM = 200, LEAF = 400, LEAVES = 3, FLOATERS = 3, COUNT_ALL = FLOATERS + STEM + LEAVES * LEAF };
 
-/* A stem of height 2, and from it three leaves that arch over and end at -0.5, 0.2 and 0.4. */
+/* Floaters first; a stem of height 2, and from it three leaves that arch over and end at -0.5, 0.2 and 0.4. */
 static void make(float (*xyz)[3])
 {
     static const double foot[LEAVES] = {1.0, 1.3, 1.6}, end[LEAVES] = {-0.5, 0.2, 0.4};
+    for (int i = 0; i < FLOATERS; i++, xyz++) xyz[0][0] = (float)(3 + i);
     for (int i = 0; i < STEM; i++) xyz[i][2] = (float)(2.0 * i / (STEM - 1));
     for (int k = 0; k < LEAVES; k++)
         for (int i = 0; i < LEAF; i++) {
@@ -33,8 +34,8 @@ static void a_hanging_leaf_is_not_the_base(void **unused)
     assert_ok(plm_graph_build((const float(*)[3])xyz, COUNT_ALL, 6, 0.1, &sketch.graph, &error));
     uint32_t base, top;
     assert_ok(plm_upright_ends(&sketch, &base, &top, &error));
-    assert_int_equal(base, 0);
-    assert_int_equal(top, STEM - 1);
+    assert_int_equal(base, FLOATERS);
+    assert_int_equal(top, FLOATERS + STEM - 1);
     for (int i = 0; i < COUNT_ALL; i++) is_tube[i] = false;
     assert_ok(plm_upright_ends(&sketch, &base, &top, &error));
     assert_true(base == UINT32_MAX && top == UINT32_MAX);
