@@ -237,7 +237,7 @@ static bool is_late(plant_job *job, plm_stage_id id)
         give_up(job, id, "what it rests on was left out");
     } else {
         const double left = stage_end(job) - plm_deadline_now(deadline);
-        const double predicted = job->pace ? plm_pace_predict(job->pace, id, job->cloud->count) : 0;
+        const double predicted = job->pace ? plm_pace_predict(job->pace, (int)id, job->cloud->count) : 0;
         char why[80];
         if (predicted <= left) return false;
         snprintf(why, sizeof why, "it takes about %.2g s, %.2g s are left", predicted, left > 0 ? left : 0);
@@ -271,7 +271,7 @@ static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
         stage->seconds = seconds;
         stage->processor_seconds = processor_now() - processor_begin;
     }
-    if (status == PLM_OK && stage->runs && job->pace) plm_pace_note(job->pace, id, job->cloud->count, seconds);
+    if (status == PLM_OK && stage->runs && job->pace) plm_pace_note(job->pace, (int)id, job->cloud->count, seconds);
     return status == PLM_E_TIME ? PLM_OK : status;
 }
 
