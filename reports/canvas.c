@@ -48,6 +48,9 @@ void plm_canvas_box(plm_canvas *canvas, int x, int y, int width, int height, plm
         for (int column = x; column < x + width; column++) plm_canvas_blend(canvas, column, row, colour, 1);
 }
 
+/** Pixels off the canvas that still fit an int. */
+static const double farthest = 1e9;
+
 /* Distance of a point to a line's piece. */
 static double distance_to(double x, double y, const double line[4])
 {
@@ -59,6 +62,7 @@ static double distance_to(double x, double y, const double line[4])
 
 void plm_canvas_line(plm_canvas *canvas, double x0, double y0, double x1, double y1, double width, plm_rgb colour)
 {
+    if (!(fabs(x0) < farthest && fabs(y0) < farthest && fabs(x1) < farthest && fabs(y1) < farthest)) return;
     const double line[4] = {x0, y0, x1, y1}, reach = width / 2 + 1;
     const int left = (int)floor(fmin(x0, x1) - reach), right = (int)ceil(fmax(x0, x1) + reach);
     const int top = (int)floor(fmin(y0, y1) - reach), bottom = (int)ceil(fmax(y0, y1) + reach);
@@ -97,6 +101,7 @@ static void cover_cell(const plm_letter *letter, double x, double y, double scal
 static void draw_letter(plm_canvas *canvas, const plm_letter *letter, double x, double y, double size, double width,
                         plm_rgb colour)
 {
+    if (!(fabs(x) < farthest && fabs(y) < farthest)) return; /* nowhere near, or not a number */
     float cell[CELL][CELL];
     const double margin = CELL / 4.0;
     const int left = (int)floor(x - margin), top = (int)floor(y - CELL * 0.7);

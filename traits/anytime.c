@@ -245,13 +245,30 @@ static bool next_in_time(anytime_job *job, double left, plm_next_pass *next)
     return true;
 }
 
-/* Organs that no pass came to get their rows, which say so: a pass whose time is over. */
+/* Organs that no pass came to get their rows, which say so: those of a pass whose time is over. Nothing else of it is kept,
+ * as it looks at no points to speak of. */
 static plm_status tell_of_organs(anytime_job *job, plm_error *error)
 {
     if (!job->schedule.group[PLM_GROUP_ORGANS].is_wanted || job->has_organ_rows) return PLM_OK;
     const plm_next_pass none = {.has_group = {false, true}, .points = 1};
+    plm_pass before = job->base;
+    const bool had_base = job->has_base;
+    job->base = (plm_pass){0};
+    job->has_base = false;
     job->deadline.at = -INFINITY;
-    return run_pass(job, &none, job->chosen, error);
+    const plm_status status = run_pass(job, &none, job->chosen, error);
+    if (!had_base) return status;
+    if (job->has_base) {
+        const plm_measurement told = job->base.draft;
+        job->base.draft.value = before.draft.value;
+        job->base.draft.value_count = before.draft.value_count;
+        before.draft.value = told.value;
+        before.draft.value_count = told.value_count;
+    }
+    plm_pass_free(&job->base);
+    job->base = before;
+    job->has_base = true;
+    return status;
 }
 
 /* Until no pass fits any more, or is worth it. */

@@ -112,6 +112,25 @@ static void a_view_holds_at_most_the_points_asked_for_within_a_step_of_their_pla
     test_remove_folder(folder);
 }
 
+/* Places that are no numbers come from plants of which nothing could be drawn. */
+static void what_has_no_place_is_not_drawn(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_canvas canvas;
+    const plm_rgb white = {255, 255, 255}, ink = {0, 0, 0};
+    const plm_lettering lettering = {.size = 9, .colour = ink, .has_halo = true};
+    assert_ok(plm_canvas_create(90, 60, white, &canvas, &error));
+    const double nowhere[] = {NAN, INFINITY, -INFINITY, 1e300};
+    for (size_t k = 0; k < COUNT(nowhere); k++) {
+        plm_canvas_text(&canvas, nowhere[k], 30, "12 mm", &lettering);
+        plm_canvas_text(&canvas, 30, nowhere[k], "12 mm", &lettering);
+        plm_canvas_line(&canvas, 10, 10, 10, nowhere[k], 2, ink);
+    }
+    for (size_t i = 0; i < (size_t)(90 * 60); i++) assert_memory_equal(&canvas.pixel[i], &white, sizeof white);
+    plm_canvas_free(&canvas);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -119,6 +138,7 @@ int main(void)
         cmocka_unit_test(text_of_the_user_cannot_become_markup),
         cmocka_unit_test(a_thumbnail_is_a_jpeg_of_the_left_part),
         cmocka_unit_test(a_view_holds_at_most_the_points_asked_for_within_a_step_of_their_place),
+        cmocka_unit_test(what_has_no_place_is_not_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

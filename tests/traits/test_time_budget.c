@@ -211,6 +211,7 @@ static void what_there_is_no_time_for_is_left_out_with_that_reason(void **unused
         assert_true(used <= 1.1 + 80 * step[i]); /* each row is asked for */
         assert_true(late >= late_before || late > plant.value_count / 2);
         assert_true((late > 0) == (record.is_late[0] || record.is_late[1]));
+        assert_true(plant.cloud.count > 1000); /* what is shown is what was measured, however little of it */
         late_before = late;
         plm_measurement_free(&plant);
     }
