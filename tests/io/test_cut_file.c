@@ -3,6 +3,7 @@
 
 #include "io/bytes.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 enum { SIZE = 20 << 20 }; /* larger than what is read in one go */
@@ -15,8 +16,9 @@ static unsigned char byte_at(size_t i)
 static void a_file_cut_behind_the_readers_back_is_still_there(void **unused)
 {
     (void)unused;
-    char path[] = "/tmp/plantimeter_cut_XXXXXX";
-    const int file = mkstemp(path);
+    char *folder = test_make_folder(), path[4096];
+    snprintf(path, sizeof path, "%s/cut", folder);
+    const int file = open(path, O_RDWR | O_CREAT | O_EXCL, 0600);
     assert_true(file >= 0);
     unsigned char *all = plm_alloc(SIZE, 1, NULL);
     assert_non_null(all);
@@ -33,7 +35,7 @@ static void a_file_cut_behind_the_readers_back_is_still_there(void **unused)
     plm_bytes_close(&bytes);
     plm_free(all);
     close(file);
-    unlink(path);
+    test_remove_folder(folder);
 }
 
 int main(void)
