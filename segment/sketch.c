@@ -2,6 +2,7 @@
 #include "segment/sketch.h"
 
 #include "segment/scratch.h"
+#include "segment/stem_fit.h"
 
 #include <math.h>
 #include <string.h>
@@ -89,9 +90,7 @@ void plm_sketch_free(plm_sketch *sketch)
     plm_free(sketch->tube);
     plm_free(sketch->is_tube);
     plm_free(sketch->is_stem);
-    plm_free(sketch->stem.node);
-    plm_free(sketch->stem.radius);
-    plm_free(sketch->stem.along);
+    plm_stem_path_free(&sketch->stem);
     plm_free(sketch->group);
     plm_free(sketch->leaf);
     plm_free(sketch->leaflet);

@@ -1,11 +1,9 @@
 /* segment/stem_end.c: where the stem ends. The way through thick tubes may run on into the petiole of the topmost leaf:
  * then the blades at its end seem to sit on the stem without the petioles that the other leaves have. */
-#include "cloud/linear.h"
 #include "segment/side_groups.h"
 #include "segment/stem_fit.h"
 
 #include <math.h>
-#include <string.h>
 
 static const double END_REACH = 2;      /* feet this near to the path's end (in R) are at its end */
 static const double SESSILE = 0.4;      /* of the other leaves' petioles: a shorter tube is none */
@@ -37,16 +35,6 @@ static double typical_petiole(const plm_side_groups *groups, double end, float *
     return plm_quantile(value, count, 0.5);
 }
 
-/* Direction of the path over some nodes from n up (or down, with a negative step). */
-static void direction(const plm_stem_path *stem, size_t n, int step, double out[3])
-{
-    size_t m = n;
-    for (int k = 0; k < 6; k++)
-        if ((step > 0 && m + 1 < stem->count) || (step < 0 && m > 0)) m = step > 0 ? m + 1 : m - 1;
-    for (int axis = 0; axis < 3; axis++) out[axis] = step * (stem->node[m][axis] - stem->node[n][axis]);
-    plm_normalise(out);
-}
-
 static double mean_radius(const plm_stem_path *stem, size_t n, int step)
 {
     double sum = 0;
@@ -66,10 +54,7 @@ static size_t best_cut(const plm_stem_path *stem, double from, double to, double
     double most = EVIDENCE_LEAST;
     for (size_t n = 3; n + 3 < stem->count; n++) {
         if (stem->along[n] < from || stem->along[n] > to) continue;
-        double below[3], above[3];
-        direction(stem, n, -1, below);
-        direction(stem, n, 1, above);
-        const double bend = acos(fmax(-1, fmin(1, plm_dot(below, above))));
+        const double bend = plm_stem_turn(stem, n);
         const double drop = 1 - mean_radius(stem, n, 1) / mean_radius(stem, n, -1);
         const double evidence = bend / BEND + drop / DROP;
         if (evidence > most) {
@@ -108,72 +93,79 @@ static size_t leaves_beyond(const plm_side_groups *groups, double place, double 
     return count + sessile;
 }
 
+/* What stands on the stem, as far as its end goes. */
+typedef struct stem_top {
+    plm_side_groups groups;
+    double end;     /* arc length from which on a foot is at the path's end */
+    double typical; /* median tube length of the other leaves' blades */
+} stem_top;
+
+static plm_status find_top(plm_sketch *sketch, stem_top *top, plm_error *error)
+{
+    const plm_stem_path *stem = &sketch->stem;
+    *top = (stem_top){.end = stem->along[stem->count - 1] - END_REACH * sketch->scale.radius};
+    plm_status status = plm_side_groups_find(sketch, &top->groups, error);
+    if (status != PLM_OK) return status;
+    float *value = plm_alloc(top->groups.count + 1, sizeof *value, error);
+    if (!value) {
+        plm_side_groups_free(&top->groups);
+        return PLM_E_MEMORY;
+    }
+    top->typical = typical_petiole(&top->groups, top->end, value);
+    plm_free(value);
+    return PLM_OK;
+}
+
 /* Takes the path out of a petiole that it turned into beyond the last foot. A leaf beyond the turn beside the one that the
  * path ran into must stand on the straight continuation. */
-static plm_status leave_petiole(plm_sketch *sketch, bool *done, plm_error *error)
+static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *done, plm_error *error)
 {
-    plm_stem_path *stem = &sketch->stem;
-    plm_side_groups groups = {0};
+    const double R = sketch->scale.radius, last = last_foot(&top->groups, top->end, STUB * R);
     *done = false;
-    plm_status status = plm_side_groups_find(sketch, &groups, error);
-    if (status != PLM_OK) return status;
-    const double R = sketch->scale.radius, end = stem->along[stem->count - 1] - END_REACH * R;
-    float *value = plm_alloc(groups.count + 1, sizeof *value, error);
-    if (!value) status = PLM_E_MEMORY;
-    const double typical = value ? typical_petiole(&groups, end, value) : 0;
-    const double last = last_foot(&groups, end, STUB * R);
-    const size_t kink = typical >= PETIOLES_FOR_KINK * R && last > 0 ? plm_stem_kink(stem, last) : 0;
-    if (kink) {
-        const size_t leaves = leaves_beyond(&groups, stem->along[kink] + 0.5 * R, SESSILE * typical);
-        status = plm_stem_straighten(sketch, kink, leaves > 1 ? INTERNODE_LEAST * R : 0, done, error);
-    }
-    if (status == PLM_OK && *done) plm_sketch_mark_stem(sketch);
-    plm_free(value);
-    plm_side_groups_free(&groups);
+    if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
+    const size_t kink = plm_stem_kink(&sketch->stem, last);
+    if (!kink) return PLM_OK;
+    const size_t leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, SESSILE * top->typical);
+    const plm_status status = plm_stem_straighten(sketch, kink, leaves > 1 ? INTERNODE_LEAST * R : 0, done, error);
+    if (*done) plm_sketch_mark_stem(sketch);
     return status;
 }
 
-static plm_status leave_sessile_end(plm_sketch *sketch, plm_error *error)
+/* Cuts the path before a last stretch without feet, where the leaf at its end lacks the petiole that the others have. */
+static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
 {
     plm_stem_path *stem = &sketch->stem;
-    plm_side_groups groups = {0};
-    plm_status status = plm_side_groups_find(sketch, &groups, error);
-    if (status != PLM_OK) return status;
-    const double R = sketch->scale.radius, end = stem->along[stem->count - 1] - END_REACH * R;
-    float *value = plm_alloc(groups.count + 1, sizeof *value, error);
-    if (!value) status = PLM_E_MEMORY;
-    const double typical = value ? typical_petiole(&groups, end, value) : 0;
-    if (typical >= PETIOLES_LEAST * R) {
-        bool is_sessile = false, has_petiole = false;
-        double last = 0;
-        for (size_t g = 0; g < groups.count; g++) {
-            const plm_side_group *group = &groups.group[g];
-            if (!group->has_foot || (!group->blades && group->tube_length < STUB * R)) continue;
-            const bool sessile = group->blades && tube_of_blade(group) < SESSILE * typical;
-            if (group->along >= end && sessile)
-                is_sessile = true;
-            else
-                last = fmax(last, group->along);
-            has_petiole |= group->along >= end && group->blades && !sessile;
-        }
-        if (is_sessile && !has_petiole && stem->along[stem->count - 1] - last > BARE_LEAST * R) {
-            stem->count = best_cut(stem, last, stem->along[stem->count - 1] - CUT_END * R, last + CUT_BEYOND * R) + 1;
-            plm_sketch_mark_stem(sketch);
-        }
+    const double R = sketch->scale.radius, length = stem->along[stem->count - 1];
+    if (top->typical < PETIOLES_LEAST * R) return;
+    bool is_sessile = false, has_petiole = false;
+    double last = 0;
+    for (size_t g = 0; g < top->groups.count; g++) {
+        const plm_side_group *group = &top->groups.group[g];
+        if (!group->has_foot || (!group->blades && group->tube_length < STUB * R)) continue;
+        const bool sessile = group->blades && tube_of_blade(group) < SESSILE * top->typical;
+        if (group->along >= top->end && sessile)
+            is_sessile = true;
+        else
+            last = fmax(last, group->along);
+        has_petiole |= group->along >= top->end && group->blades && !sessile;
     }
-    plm_free(value);
-    plm_side_groups_free(&groups);
-    return status;
+    if (!is_sessile || has_petiole || length - last <= BARE_LEAST * R) return;
+    stem->count = best_cut(stem, last, length - CUT_END * R, last + CUT_BEYOND * R) + 1;
+    plm_sketch_mark_stem(sketch);
 }
 
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
-    bool again = true, has_left = false;
-    for (int round = 0; round < ROUNDS && again; round++) {
-        const plm_status status = leave_petiole(sketch, &again, error);
+    bool again = true;
+    plm_status status = PLM_OK;
+    for (int round = 0; round < ROUNDS && again && status == PLM_OK; round++) {
+        stem_top top;
+        status = find_top(sketch, &top, error);
         if (status != PLM_OK) return status;
-        has_left |= again;
+        status = leave_petiole(sketch, &top, &again, error);
+        if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
+        plm_side_groups_free(&top.groups);
     }
-    return has_left ? PLM_OK : leave_sessile_end(sketch, error);
+    return status;
 }

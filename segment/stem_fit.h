@@ -27,6 +27,11 @@ plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t b
 /** Sharpens the line and the radii by robust circles. radius[] must hold a guess within some 40 %. */
 plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error);
 
+void plm_stem_path_free(plm_stem_path *path);
+
+/** Angle (radians) between the directions of the path below and above node n. */
+double plm_stem_turn(const plm_stem_path *stem, size_t n);
+
 /** The first node from arc length `from` on at which the path turns as it does where a way leaves the stem for a petiole;
  * 0 where there is none. */
 size_t plm_stem_kink(const plm_stem_path *stem, double from);

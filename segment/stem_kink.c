@@ -24,7 +24,7 @@ static void direction(const plm_stem_path *stem, size_t n, int step, double out[
     plm_normalise(out);
 }
 
-static double turn_at(const plm_stem_path *stem, size_t n)
+double plm_stem_turn(const plm_stem_path *stem, size_t n)
 {
     double below[3], above[3];
     direction(stem, n, -1, below);
@@ -38,18 +38,18 @@ size_t plm_stem_kink(const plm_stem_path *stem, double from)
     double most = 0;
     for (size_t n = 3; n + 3 < stem->count; n++) {
         if (stem->along[n] < from) continue;
-        const double turn = turn_at(stem, n);
+        const double turn = plm_stem_turn(stem, n);
         if (turn > most) {
             most = turn;
             best = n;
         }
         if (most < KINK || n < best + RISING) continue;
-        if (turn_at(stem, best - 1) <= most) return best; /* not the rest of a turn below */
+        if (plm_stem_turn(stem, best - 1) <= most) return best; /* not the rest of a turn below */
         most = turn;
         best = n;
     }
     if (most < KINK_AT_END || !best) return 0;
-    while (best > 3 && stem->along[best - 1] >= from && turn_at(stem, best - 1) >= PLATEAU * most) best--;
+    while (best > 3 && stem->along[best - 1] >= from && plm_stem_turn(stem, best - 1) >= PLATEAU * most) best--;
     return best;
 }
 
@@ -116,13 +116,6 @@ static size_t follow(const plm_sketch *sketch, size_t from, const plm_stem_path 
     return count - missed;
 }
 
-static void free_path(plm_stem_path *path)
-{
-    plm_free(path->node);
-    plm_free(path->radius);
-    plm_free(path->along);
-}
-
 plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bool *done, plm_error *error)
 {
     *done = false;
@@ -134,13 +127,13 @@ plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bo
                             .radius = plm_alloc(most, sizeof *longer.radius, error),
                             .along = plm_alloc(most, sizeof *longer.along, error)};
     if (!longer.node || !longer.radius || !longer.along) {
-        free_path(&longer);
+        plm_stem_path_free(&longer);
         return PLM_E_MEMORY;
     }
     const plm_stem_path petiole = rest_of(stem, kink);
     const size_t added = follow(sketch, from, &petiole, step, radius, longer.node + from + 1);
     if ((double)added * step < least) {
-        free_path(&longer);
+        plm_stem_path_free(&longer);
         return PLM_OK;
     }
     *done = true;
@@ -154,7 +147,7 @@ plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bo
         longer.along[n] = longer.along[n - 1] + plm_norm(d);
         longer.radius[n] = radius;
     }
-    free_path(stem);
+    plm_stem_path_free(stem);
     *stem = longer;
     return PLM_OK;
 }

@@ -163,6 +163,14 @@ double plm_stem_nearest(const plm_stem_path *stem, const float xyz[3], plm_stem_
     return sqrt(best);
 }
 
+void plm_stem_path_free(plm_stem_path *path)
+{
+    plm_free(path->node);
+    plm_free(path->radius);
+    plm_free(path->along);
+    *path = (plm_stem_path){0};
+}
+
 static void measure_along(plm_stem_path *stem)
 {
     stem->along[0] = 0;
@@ -372,9 +380,7 @@ plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t b
         plm_sketch_mark_stem(sketch);
     }
     plm_free(chain);
-    plm_free(stem.node);
-    plm_free(stem.radius);
-    plm_free(stem.along);
+    plm_stem_path_free(&stem);
     return status;
 }
 
