@@ -28,6 +28,10 @@ typedef struct plm_side_groups {
  * petioles meet. */
 plm_status plm_side_groups_find(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
 
+/** For plants without a stem: splits groups of several petioles, so that each blade with a petiole of its own has a group.
+ * Writes sketch->group. */
+plm_status plm_side_groups_split(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
+
 void plm_side_groups_free(plm_side_groups *groups);
 
 /** Blades smaller than this are no leaves. */

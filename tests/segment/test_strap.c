@@ -65,10 +65,19 @@ static void a_small_rosette_in_noise_keeps_its_leaves(void **unused)
           0.8, 0.9); /* the smallest leaf is 1 mm wide */
 }
 
+/* Three petioles of this plant, one above the other, are one foot to the eye of a shell around the core. */
+static void petioles_that_lean_on_each_other_bear_a_leaf_each(void **unused)
+{
+    (void)unused;
+    check("arabidopsis", PLM_HABIT_ROSETTE, 102,
+          &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 102, .points = 60000}, 1, 0.95);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
-                                       cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves)};
+                                       cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
+                                       cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
