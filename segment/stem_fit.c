@@ -69,6 +69,14 @@ static size_t circle_step(const double (*e)[2], size_t count, double radius0, do
     return used;
 }
 
+size_t plm_stem_circle(const double (*e)[2], size_t count, double scatter, double cutoff, double x[3])
+{
+    const double radius = x[2];
+    size_t used = 0;
+    for (int step = 0; step < STEPS; step++) used = circle_step(e, count, radius, scatter, cutoff, x);
+    return used && x[2] > 0.3 * radius ? used : 0;
+}
+
 /* Moves one node to the centre of its circle. e: scratch. */
 static void fit_node(const plm_sketch *sketch, plm_stem_path *stem, size_t n, const offset_point *point, size_t count,
                      double (*e)[2])
@@ -88,10 +96,7 @@ static void fit_node(const plm_sketch *sketch, plm_stem_path *stem, size_t n, co
     const double noise = sketch->scale.noise;
     const double scatter = fmax(noise, 0.05 * radius), cutoff = fmax(OUTLIER * radius, OUTLIER_SIGMAS * noise);
     double x[3] = {0, 0, radius};
-    size_t used = 0;
-    for (int step = 0; step < STEPS; step++)
-        used = circle_step((const double(*)[2])e, near, radius, scatter, cutoff, x);
-    if (!used || !(x[2] > 0.3 * radius)) return;
+    if (!plm_stem_circle((const double(*)[2])e, near, scatter, cutoff, x)) return;
     for (int axis = 0; axis < 3; axis++) stem->node[n][axis] += x[0] * u[axis] + x[1] * v[axis];
     stem->radius[n] = x[2];
 }

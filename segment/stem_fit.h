@@ -27,6 +27,13 @@ plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t b
 /** Sharpens the line and the radii by robust circles. radius[] must hold a guess within some 40 %. */
 plm_status plm_stem_fit(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error);
 
+/** Fits a circle to points across the line, robustly (Tukey's cutoff), held near its start as far as the points do not
+ * tell. x: centre and radius, in: the start, which has its centre at 0. Gives the number of points used; 0: too few, and x is of no use. */
+size_t plm_stem_circle(const double (*e)[2], size_t count, double scatter, double cutoff, double x[3]);
+
+/** Writes along[] from the nodes. */
+void plm_stem_measure_along(plm_stem_path *stem);
+
 void plm_stem_path_free(plm_stem_path *path);
 
 /** Angle (radians) between the directions of the path below and above node n. */

@@ -171,7 +171,7 @@ void plm_stem_path_free(plm_stem_path *path)
     *path = (plm_stem_path){0};
 }
 
-static void measure_along(plm_stem_path *stem)
+void plm_stem_measure_along(plm_stem_path *stem)
 {
     stem->along[0] = 0;
     for (size_t k = 1; k < stem->count; k++) {
@@ -209,7 +209,7 @@ static plm_status resample(const plm_sketch *sketch, const uint32_t *chain, size
             stem->node[n][axis] = sketch->working.xyz[a][axis] +
                                   t * ((double)sketch->working.xyz[b][axis] - sketch->working.xyz[a][axis]);
     }
-    measure_along(stem);
+    plm_stem_measure_along(stem);
     return PLM_OK;
 }
 
@@ -226,7 +226,7 @@ void plm_stem_smooth(plm_stem_path *stem, size_t reach, double (*buffer)[3])
             stem->node[n][axis] = sum / (double)(2 * w + 1);
         }
     }
-    measure_along(stem);
+    plm_stem_measure_along(stem);
 }
 
 /* Moves each node to the mean of the tube points around it, across the stem only. */
@@ -327,7 +327,7 @@ static plm_status refine(const plm_sketch *sketch, plm_stem_path *stem, plm_erro
     for (int round = 0; round < CENTRING_ROUNDS; round++) {
         plm_stem_smooth(stem, (size_t)(0.75 / STEP), (double(*)[3])buffer);
         centre_nodes(sketch, stem, reach, buffer);
-        measure_along(stem);
+        plm_stem_measure_along(stem);
     }
     plm_free(buffer);
     return measure_radius(sketch, stem, reach, error);

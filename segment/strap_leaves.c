@@ -5,6 +5,7 @@
 
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
+#include "segment/strap_stem.h"
 
 #include <math.h>
 
@@ -38,7 +39,6 @@ static plm_status mark_stem(plm_sketch *sketch, const float *from_base, uint32_t
     const size_t count = sketch->working.count;
     size_t sources = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (sketch->leaf[i] >= 0) sketch->is_stem[i] = false;
         allowed[i] = !sketch->is_stem[i] && isfinite(from_base[i]);
         if (sketch->leaf[i] >= 0) source[sources++] = i;
     }
@@ -78,6 +78,11 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     if (status == PLM_OK && !(foot = plm_alloc(*leaves + 1, sizeof *foot, error))) status = PLM_E_MEMORY;
     if (status == PLM_OK) {
         for (size_t k = 0; k < *leaves; k++) foot[k] = INFINITY;
+        for (size_t i = 0; i < count; i++)
+            if (sketch->leaf[i] >= 0) sketch->is_stem[i] = false;
+        status = plm_strap_stem(sketch, *leaves, error);
+    }
+    if (status == PLM_OK) {
         for (size_t i = 0; i < count; i++) {
             const int32_t leaf = sketch->leaf[i];
             if (leaf >= 0) foot[leaf] = fmin(foot[leaf], (double)distance[i]);
