@@ -26,14 +26,9 @@ typedef struct work {
     branch_set *set;
 } work;
 
-typedef struct visit {
-    float distance;
-    uint32_t point;
-} visit;
-
-static int far_first(const void *a, const void *b)
+int plm_far_first(const void *a, const void *b)
 {
-    const visit *p = a, *q = b;
+    const plm_visit *p = a, *q = b;
     if (p->distance != q->distance) return p->distance > q->distance ? -1 : 1;
     return (p->point > q->point) - (p->point < q->point);
 }
@@ -92,7 +87,7 @@ plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double 
                           size_t *count, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    visit *order = plm_scratch_take(&scratch, graph->count, sizeof *order);
+    plm_visit *order = plm_scratch_take(&scratch, graph->count, sizeof *order);
     work w = {.graph = graph, .distance = distance, .reach = reach, .least = least, .branch = branch};
     w.parent = plm_scratch_take(&scratch, graph->count, sizeof *w.parent);
     w.next = plm_scratch_take(&scratch, graph->count, sizeof *w.next);
@@ -102,9 +97,9 @@ plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double 
         branch[i] = NONE;
         w.parent[i] = i;
         w.set[i] = (branch_set){.tip = distance[i], .head = i, .tail = i, .size = 0};
-        if (isfinite(distance[i])) order[visits++] = (visit){distance[i], i};
+        if (isfinite(distance[i])) order[visits++] = (plm_visit){distance[i], i};
     }
-    if (visits) qsort(order, visits, sizeof *order, far_first);
+    if (visits) qsort(order, visits, sizeof *order, plm_far_first);
     for (size_t k = 0; k < visits; k++) {
         const uint32_t i = order[k].point;
         w.set[i].size = 1; /* seen */

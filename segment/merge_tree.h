@@ -4,6 +4,15 @@
 
 #include "segment/graph.h"
 
+/** A point by its distance. */
+typedef struct plm_visit {
+    float distance;
+    uint32_t point;
+} plm_visit;
+
+/** For qsort: far points first, then the earlier. */
+int plm_far_first(const void *a, const void *b);
+
 /** The branches of a graph, from distance (of each point from the base; points at INFINITY are left out): going from far
  * to near, every farthest point starts a branch; where branches meet that reach more than reach above the meeting, and
  * have at least least points each, they end there, and what lies below is trunk; a lesser one is swallowed by what it

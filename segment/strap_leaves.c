@@ -6,6 +6,7 @@
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
 #include "segment/strap_stem.h"
+#include "segment/strap_trunk.h"
 
 #include <math.h>
 
@@ -31,20 +32,23 @@ static size_t base_points(const plm_sketch *sketch, uint32_t *source)
     return count;
 }
 
-/* The stem is the trunk as far as its line says so; what else is trunk (lobes and folds that the tree swallowed) goes to
- * the leaf that is nearest along the graph without crossing the stem. */
+/* The stem is the trunk as far as its line says so; what else is trunk (lobes and folds that the tree swallowed, and what
+ * lies below a touch) goes to the leaf whose surface goes on there, or else to the one that is nearest along the graph
+ * without crossing the stem. */
 static plm_status mark_stem(plm_sketch *sketch, const float *from_base, uint32_t *source, bool *allowed,
                             float *distance, int32_t *origin, plm_error *error)
 {
     const size_t count = sketch->working.count;
     size_t sources = 0;
+    plm_status status = plm_strap_trunk(sketch, from_base, error);
+    if (status != PLM_OK) return status;
     for (uint32_t i = 0; i < count; i++) {
         allowed[i] = !sketch->is_stem[i] && isfinite(from_base[i]);
         if (sketch->leaf[i] >= 0) source[sources++] = i;
     }
     const plm_walk walk = {
         .source = source, .source_count = sources, .allowed = allowed, .distance = distance, .origin = origin};
-    const plm_status status = plm_graph_walk(&sketch->graph, &walk, error);
+    status = plm_graph_walk(&sketch->graph, &walk, error);
     for (size_t i = 0; status == PLM_OK && i < count; i++) {
         if (allowed[i] && sketch->leaf[i] < 0) {
             if (origin[i] >= 0)

@@ -22,9 +22,9 @@ static label_score check(const char *kind, plm_habit habit, uint64_t seed, const
     assert_ok(plm_clean(cloud, NULL, keep, NULL, &error));
     assert_ok(plm_segment(cloud, NULL, keep, NULL, &found, &error));
     assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, found.label, found.organ, &score, &error));
-    print_message("%s %d: habit %s, %zu leaves of %zu, F1 %.3f, stem %.3f, leaf %.3f\n", kind, (int)seed,
+    print_message("%s %d: habit %s, %zu leaves of %zu, F1 %.3f, stem %.3f, leaf %.3f, worst %.3f\n", kind, (int)seed,
                   plm_habit_name(found.habit), score.leaves_found, score.leaves, score.f1, score.iou[PLM_LABEL_STEM],
-                  score.iou[PLM_LABEL_LEAF]);
+                  score.iou[PLM_LABEL_LEAF], score.worst_leaf);
     assert_int_equal(found.habit, habit);
     assert_int_equal(score.leaves_found, score.leaves);
     assert_true(score.f1 >= f1);
@@ -45,6 +45,20 @@ static void every_leaf_of_maize_is_found(void **unused)
           &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 102, .points = 30000, .noise = 5e-4}, 0.95, 0.7);
     check("maize", PLM_HABIT_STRAP, 101, &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 101, .points = 30000},
           0.95, 0.85);
+}
+
+/* Leaves 3 and 5 touch a hand above their feet: each keeps its foot. */
+static void blades_that_touch_keep_their_feet(void **unused)
+{
+    (void)unused;
+    const label_score clean =
+        check("maize", PLM_HABIT_STRAP, 102,
+              &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 102, .points = 60000}, 1, 0.8);
+    assert_true(clean.worst_leaf >= 0.93);
+    const label_score splat =
+        check("maize", PLM_HABIT_STRAP, 102,
+              &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 102, .points = 45000, .noise = 5e-4}, 1, 0.8);
+    assert_true(splat.worst_leaf >= 0.9);
 }
 
 /* The last internode is a closed tube like those below it, and feet of leaves are none of the stem. */
@@ -93,6 +107,7 @@ static void petioles_that_lean_on_each_other_bear_a_leaf_each(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
+                                       cmocka_unit_test(blades_that_touch_keep_their_feet),
                                        cmocka_unit_test(the_stem_of_maize_is_its_tube),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
                                        cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),

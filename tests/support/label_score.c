@@ -56,7 +56,7 @@ plm_status label_score_compute(size_t count, const uint8_t *true_label, const in
     const size_t rows = organ_room(count, true_label, true_organ), columns = organ_room(count, label, organ);
     size_t *table = plm_alloc_zero((rows + 1) * (columns + 1), sizeof *table, error); /* last row and column: sums */
     if (!table) return PLM_E_MEMORY;
-    label_score out = {0};
+    label_score out = {.worst_leaf = 1};
     score_classes(count, true_label, label, &out);
     for (size_t i = 0; i < count; i++) {
         if (!counts(true_label[i])) continue;
@@ -71,8 +71,11 @@ plm_status label_score_compute(size_t count, const uint8_t *true_label, const in
         const size_t truth = table[r * (columns + 1) + columns];
         if (truth < LEAF_POINTS) continue;
         out.leaves++;
+        double best = 0;
         for (size_t c = 0; c < columns; c++)
-            out.leaves_matched += ratio(table[r * (columns + 1) + c], truth, table[rows * (columns + 1) + c]) > 0.5;
+            best = fmax(best, ratio(table[r * (columns + 1) + c], truth, table[rows * (columns + 1) + c]));
+        out.leaves_matched += best > 0.5;
+        out.worst_leaf = fmin(out.worst_leaf, best);
     }
     out.f1 =
         out.leaves + out.leaves_found ? 2 * (double)out.leaves_matched / (double)(out.leaves + out.leaves_found) : 1;

@@ -13,7 +13,8 @@ typedef struct label_score {
     double iou_mean;             /**< of iou_axis and iou[leaf] */
     size_t leaves, leaves_found; /**< true ones with at least ten points; predicted ones with at least one */
     size_t leaves_matched;       /**< pairs with an intersection over union above 0.5 */
-    double f1;                   /**< of the leaves; 1 where there are none and none was found */
+    double worst_leaf; /**< of a true leaf and the predicted one that meets it best: the least; 1 without leaves */
+    double f1;         /**< of the leaves; 1 where there are none and none was found */
 } label_score;
 
 /** PLM_E_MEMORY only. */
