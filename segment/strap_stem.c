@@ -21,14 +21,16 @@ static const double CLOSED = 0.75;        /* share of the directions in which a 
 static const double OPEN = 0.45;          /* less is a blade */
 static const double WIDE = 1.4;           /* of the lower stem's radius: the stem has become a whorl of leaves */
 static const double WIDENED = 1.1;        /* the same beyond the last fork, of the least radius below */
-static const double GAIN = 0.4, GAIN_WIDE = 0.12; /* how far the line follows a circle; one that is too wide */
-static const double FOOT_LIKE = 1.2;              /* wider than this: of a foot and the stem together */
-static const double MARGIN = 1.05, SCATTERS = 2;  /* surface: within so many radii and scatters of the line */
-static const double NEAR_SURFACE = 1.6;           /* points within so many radii tell the scatter */
-static const double END_CAP = 0.3;                /* the stem's end rises so many radii above its last node */
+static const double GAIN = 0.4, GAIN_WIDE = 0.12;  /* how far the line follows a circle; one that is too wide */
+static const double FOOT_LIKE = 1.2;               /* wider than this: of a foot and the stem together */
+static const double FOOT_POWER = 8;                /* by which wide circles count less */
+static const double CLOSED_LEAST = 0.05;           /* an open circle counts so much */
+static const double MARGIN = 1.05, SCATTERS = 2.5; /* surface: within so many radii and scatters of the line */
+static const double NEAR_SURFACE = 1.6;            /* points within so many radii tell the scatter */
+static const double END_CAP = 0.3;                 /* the stem's end rises so many radii above its last node */
 enum {
     SECTORS = 12,
-    PASSES = 3,
+    PASSES = 5,
     ARM = 4,    /* nodes to both sides for the direction; a node stands for R / 4 */
     ABOUT = 8,  /* nodes to both sides for the radius */
     BACK = 12,  /* the tube is followed from so many nodes below the last fork: its foot has drawn the line aside */
@@ -48,6 +50,8 @@ typedef struct tube {
     double (*moved)[3]; /* buffer: nodes */
     float *value;       /* buffer */
     double (*e)[2];     /* buffer: points across the line */
+    uint32_t *near;     /* points about the trunk */
+    size_t near_count;
 } tube;
 
 static double low_radius(const tube *t, size_t from, size_t to)
@@ -86,6 +90,27 @@ static double share_closed(const tube *t, size_t count, const double x[3])
     return (double)sectors / SECTORS;
 }
 
+/* The points in the trunk's box, widened by what circles look at: most of the leaves are not. */
+static void find_near(tube *t)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, most = 0;
+    for (size_t n = 0; n < t->path.count; n++) {
+        most = fmax(most, t->path.radius[n]);
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fmin(low[axis], t->path.node[n][axis]);
+            high[axis] = fmax(high[axis], t->path.node[n][axis]);
+        }
+    }
+    const double reach = hypot(REACH * most, fmax(most, 2 * t->sketch->working.cell));
+    t->near_count = 0;
+    for (uint32_t i = 0; i < t->sketch->working.count; i++) {
+        const float *p = t->sketch->working.xyz[i];
+        bool inside = true;
+        for (int axis = 0; axis < 3; axis++) inside &= p[axis] >= low[axis] - reach && p[axis] <= high[axis] + reach;
+        if (inside) t->near[t->near_count++] = i;
+    }
+}
+
 /* The circle about a place of the line. x: its centre across the line and its radius; false: too few points. */
 static bool fit_circle(const tube *t, const double at[3], const double along[3], double radius, double centre[3],
                        double *found, double *closed)
@@ -96,8 +121,8 @@ static bool fit_circle(const tube *t, const double at[3], const double along[3],
     double u[3], v[3];
     plm_frame_of_axis(along, u, v);
     size_t count = 0;
-    for (size_t i = 0; i < s->working.count; i++) {
-        const float *p = s->working.xyz[i];
+    for (size_t i = 0; i < t->near_count; i++) {
+        const float *p = s->working.xyz[t->near[i]];
         const double d[3] = {p[0] - at[0], p[1] - at[1], p[2] - at[2]};
         if (fabs(d[0]) > around || fabs(d[1]) > around || fabs(d[2]) > around) continue;
         if (fabs(plm_dot(d, along)) > half) continue;
@@ -114,6 +139,32 @@ static bool fit_circle(const tube *t, const double at[3], const double along[3],
     *found = x[2];
     *closed = share_closed(t, count, x);
     return true;
+}
+
+/* Draws the line through the centres: a local straight line about each node, to which circles count the less the wider
+ * they are, since these hold a foot and are drawn aside by it, and the less closed. */
+static void straighten(tube *t)
+{
+    const plm_stem_path *path = &t->path;
+    for (size_t n = 0; n < path->count; n++) {
+        const size_t from = n > ABOUT ? n - ABOUT : 0, to = n + ABOUT < path->count ? n + ABOUT + 1 : path->count;
+        double sum[3] = {0}, first[3] = {0}, second[3] = {0}; /* of weights, of places, of places by the offset */
+        for (size_t k = from; k < to; k++) {
+            const double u = ((double)k - (double)n) / (ABOUT + 1), cubed = 1 - fabs(u) * u * u;
+            const double wider = fmin(t->low[k] / path->radius[k], 1);
+            const double w = cubed * cubed * cubed * pow(wider, FOOT_POWER) * fmax(t->closed[k], CLOSED_LEAST);
+            const double power[3] = {w, w * u, w * u * u};
+            for (int axis = 0; axis < 3; axis++) {
+                sum[axis] += power[axis];
+                first[axis] += w * path->node[k][axis];
+                second[axis] += w * u * path->node[k][axis];
+            }
+        }
+        const double spread = sum[0] * sum[2] - sum[1] * sum[1];
+        for (int axis = 0; axis < 3; axis++)
+            t->moved[n][axis] = (sum[2] * first[axis] - sum[1] * second[axis]) / spread;
+    }
+    memcpy(path->node, t->moved, path->count * sizeof *path->node);
 }
 
 /* Circles about all nodes, which move to their centres. */
@@ -250,9 +301,13 @@ static void find_tube(plm_sketch *sketch, tube *t, size_t fork, size_t most)
     const double step = sketch->stem.along[1] - sketch->stem.along[0];
     const size_t back = BACK < fork - LEAST_NODES ? BACK : fork - LEAST_NODES;
     for (int pass = 0; pass < PASSES; pass++) {
+        find_near(t);
         fit_trunk(t);
-        plm_stem_smooth(&t->path, 2, t->moved);
+        find_low(t);
+        straighten(t);
     }
+    t->near_count = sketch->working.count; /* the tube may go anywhere */
+    for (uint32_t i = 0; i < t->near_count; i++) t->near[i] = i;
     t->path.count -= back;
     follow(t, step, most);
     cut_end(t, fork);
@@ -273,7 +328,8 @@ plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
               .low = plm_scratch_take(&scratch, most, sizeof *t.low),
               .moved = plm_scratch_take(&scratch, most, sizeof *t.moved),
               .value = plm_scratch_take(&scratch, most + count, sizeof *t.value),
-              .e = plm_scratch_take(&scratch, count, sizeof *t.e)};
+              .e = plm_scratch_take(&scratch, count, sizeof *t.e),
+              .near = plm_scratch_take(&scratch, count, sizeof *t.near)};
     float *offset = plm_scratch_take(&scratch, count, sizeof *offset);
     size_t *total = plm_scratch_take(&scratch, leaves + 1, sizeof *total);
     size_t *taken = plm_scratch_take(&scratch, leaves + 1, sizeof *taken);

@@ -81,9 +81,11 @@ static void the_stem_of_maize_is_its_tube(void **unused)
 static void noise_makes_no_petioles_of_straps(void **unused)
 {
     (void)unused;
-    check("maize", PLM_HABIT_STRAP, 102,
-          &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 102, .points = 45000, .noise = 5e-4, .views = 12},
-          0.95, 0.65);
+    const label_score score = check(
+        "maize", PLM_HABIT_STRAP, 102,
+        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 102, .points = 45000, .noise = 5e-4, .views = 12},
+        0.95, 0.65);
+    assert_true(score.iou[PLM_LABEL_STEM] >= 0.55); /* feet on alternate sides draw no line of the stem aside */
 }
 
 /* A splat with floaters: the noise is as large as the petioles' radius, and no floater is the plant's core. */
