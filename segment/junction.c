@@ -227,8 +227,7 @@ static double gap_squared(const float a[3], const double b[3])
     return sum;
 }
 
-/* The station nearest to a distance that has points, before the junction. */
-static const plm_station *station_at(const plm_leaf_way *way, double distance)
+const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance)
 {
     size_t k = (size_t)(distance / way->step + 0.5);
     if (k >= way->station_count) k = way->station_count - 1;
@@ -294,7 +293,7 @@ static void relabel_simple(work *w, double beyond, const double origin[3], const
         const uint32_t i = way->order[k];
         const float *p = w->sketch->working.xyz[i];
         if (way->distance[i] < way->junction) {
-            const plm_station *station = station_at(way, way->distance[i]);
+            const plm_station *station = plm_leaf_station(way, way->distance[i]);
             if (station->width < WIDE * way->tube)
                 w->sketch->is_tube[i] = gap_squared(p, station->middle) < reach * reach;
             continue;
@@ -315,7 +314,7 @@ static void relabel_compound(work *w)
     const uint32_t tip = way->order[way->count - 1];
     for (size_t k = 0; k < way->count; k++) {
         const uint32_t i = way->order[k];
-        const plm_station *station = station_at(way, way->distance[i]);
+        const plm_station *station = plm_leaf_station(way, way->distance[i]);
         if (way->distance[i] >= way->junction) {
             if (!s->is_tube[i] || gap_squared(s->working.xyz[i], station->middle) > 4 * station->width * station->width)
                 continue;
@@ -353,7 +352,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     else
         relabel_simple(w, plm_leaf_sinus(way, origin, along, w->value), origin, along);
     clean_foot(w);
-    return PLM_OK;
+    return compound ? plm_leaf_broad_tubes(w->sketch, way, error) : PLM_OK;
 }
 
 plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)

@@ -1,5 +1,5 @@
-/* Habits that are hard to tell: virtual maize, whose leaves wrap the stem with their feet, and rosettes in noise as thick as
- * their petioles. Every leaf is found, and begins where it leaves the stem. */
+/* Habits that are hard to tell: virtual maize, whose leaves wrap the stem with their feet, and rosettes and leaflets in noise
+ * as thick as their petioles. Every leaf is found, and begins where it leaves the stem. */
 #include "support/test.h"
 
 #include "segment/segment.h"
@@ -98,6 +98,17 @@ static void a_small_rosette_in_noise_keeps_its_leaves(void **unused)
           0.8, 0.9); /* the smallest leaf is 1 mm wide */
 }
 
+/* Leaflets of this tomato are as wide as the balls that tell tubes, and its noise is a tenth of that. */
+static void leaflets_broader_than_the_rachis_are_blade(void **unused)
+{
+    (void)unused;
+    const label_score score = check(
+        "tomato", PLM_HABIT_COMPOUND, 304,
+        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 304, .points = 45000, .noise = 5e-4, .views = 12}, 1,
+        0.85);
+    assert_true(score.worst_leaf >= 0.8);
+}
+
 /* Three petioles of this plant, one above the other, are one foot to the eye of a shell around the core. */
 static void petioles_that_lean_on_each_other_bear_a_leaf_each(void **unused)
 {
@@ -113,6 +124,7 @@ int main(void)
                                        cmocka_unit_test(the_stem_of_maize_is_its_tube),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
                                        cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
+                                       cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
                                        cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
