@@ -26,6 +26,7 @@ static const double FOOT_LIKE = 1.2;               /* wider than this: of a foot
 static const double FOOT_POWER = 8;                /* by which wide circles count less */
 static const double CLOSED_LEAST = 0.05;           /* an open circle counts so much */
 static const double MARGIN = 1.05, SCATTERS = 2.5; /* surface: within so many radii and scatters of the line */
+static const double FARTHEST = 3.3;                /* more than margin and scatters can come to */
 static const double NEAR_SURFACE = 1.6;            /* points within so many radii tell the scatter */
 static const double END_CAP = 0.3;                 /* the stem's end rises so many radii above its last node */
 enum {
@@ -90,8 +91,8 @@ static double share_closed(const tube *t, size_t count, const double x[3])
     return (double)sectors / SECTORS;
 }
 
-/* The points in the trunk's box, widened by what circles look at: most of the leaves are not. */
-static void find_near(tube *t)
+/* The points in the line's box, widened by so many radii: most of the leaves are not. */
+static void find_near(tube *t, double radii)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, most = 0;
     for (size_t n = 0; n < t->path.count; n++) {
@@ -101,7 +102,7 @@ static void find_near(tube *t)
             high[axis] = fmax(high[axis], t->path.node[n][axis]);
         }
     }
-    const double reach = hypot(REACH * most, fmax(most, 2 * t->sketch->working.cell));
+    const double reach = hypot(radii * most, fmax(most, 2 * t->sketch->working.cell));
     t->near_count = 0;
     for (uint32_t i = 0; i < t->sketch->working.count; i++) {
         const float *p = t->sketch->working.xyz[i];
@@ -244,14 +245,18 @@ static size_t trunk_nodes(const plm_sketch *sketch)
     return n;
 }
 
-/* Distance of each point from the tube's line over the radius there: INFINITY beyond the tube's end. */
-static void measure_offsets(const plm_sketch *sketch, float *offset)
+/* Distance of each point from the tube's line over the radius there: INFINITY far off and beyond the tube's end. */
+static void measure_offsets(tube *t, float *offset)
 {
-    const plm_stem_path *stem = &sketch->stem;
+    const plm_sketch *sketch = t->sketch;
+    const plm_stem_path *stem = &t->path;
     const size_t last = stem->count - 1;
     double end_along[3];
     direction(stem, last > ARM ? last - ARM : 0, last, end_along);
-    for (size_t i = 0; i < sketch->working.count; i++) {
+    find_near(t, FARTHEST);
+    for (size_t i = 0; i < sketch->working.count; i++) offset[i] = INFINITY;
+    for (size_t k = 0; k < t->near_count; k++) {
+        const uint32_t i = t->near[k];
         plm_stem_place place = {0};
         const double d = plm_stem_nearest(stem, sketch->working.xyz[i], &place);
         const double above = place.along < stem->along[last] ? 0 : plm_dot(place.offset, end_along);
@@ -295,13 +300,13 @@ static plm_status make_path(const plm_sketch *sketch, size_t nodes, size_t most,
     return PLM_OK;
 }
 
-/* From the trunk's rough path, of fork nodes, to the stem's tube, which becomes the sketch's path. */
-static void find_tube(plm_sketch *sketch, tube *t, size_t fork, size_t most)
+/* From the trunk's rough path, of fork nodes, to the stem's tube. */
+static void find_tube(const plm_sketch *sketch, tube *t, size_t fork, size_t most)
 {
     const double step = sketch->stem.along[1] - sketch->stem.along[0];
     const size_t back = BACK < fork - LEAST_NODES ? BACK : fork - LEAST_NODES;
     for (int pass = 0; pass < PASSES; pass++) {
-        find_near(t);
+        find_near(t, REACH);
         fit_trunk(t);
         find_low(t);
         straighten(t);
@@ -313,9 +318,6 @@ static void find_tube(plm_sketch *sketch, tube *t, size_t fork, size_t most)
     cut_end(t, fork);
     memcpy(t->path.radius, t->low, t->path.count * sizeof *t->low);
     plm_stem_measure_along(&t->path);
-    const plm_stem_path rough = sketch->stem;
-    sketch->stem = t->path;
-    t->path = rough;
 }
 
 plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
@@ -336,8 +338,11 @@ plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
     plm_status status = scratch.failed ? PLM_E_MEMORY : make_path(sketch, fork, most, &t.path, error);
     if (status == PLM_OK) {
         find_tube(sketch, &t, fork, most);
-        measure_offsets(sketch, offset);
+        measure_offsets(&t, offset);
         mark(sketch, offset, t.value, leaves, total, taken);
+        const plm_stem_path rough = sketch->stem;
+        sketch->stem = t.path;
+        t.path = rough;
     }
     plm_stem_path_free(&t.path);
     plm_scratch_free(&scratch, NULL);
