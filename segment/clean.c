@@ -51,7 +51,9 @@ static void join_pieces(sieve *s, double spacing)
         for (size_t j = 0; j < NEAREST && !s->drop[i]; j++) {
             const uint32_t other = s->row[i * NEAREST + j];
             if (s->drop[other]) continue;
-            const double reach = fmax(link_far * spacing, link_near * fminf(sixth(s, i), sixth(s, other)));
+            /* sparse parts of a plant hold together, floaters as sparse as one another do not */
+            const double own = fmin(link_near * fminf(sixth(s, i), sixth(s, other)), gap * spacing),
+                         reach = fmax(link_far * spacing, own);
             if (s->squared[i * NEAREST + j] > reach * reach) continue;
             const uint32_t a = root(s, (uint32_t)i), b = root(s, other);
             s->parent[a > b ? a : b] = a > b ? b : a;

@@ -2,16 +2,58 @@
  *
  *     ghost_table LABELLED_CLOUD...
  *
- * For each cloud, to standard output: the number of points (uint32), then for each the features of segment/ghosts.h and
- * its label, all float32. Ground is left out, as cleaning does. */
+ * For each cloud, to standard output: the number of points (uint32), then for each the features of segment/ghosts.h, its
+ * label, and how far the next point of the plant is that is not the point itself, all float32. Ground is left out, as
+ * cleaning does. */
+#include "cloud/neighbours.h"
 #include "io/io.h"
 #include "segment/ghosts.h"
 #include "segment/thinning.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { BUDGET = 80000 }; /* as segment/clean.c has it */
+
+/* The label that most points of a thinned one have. */
+static int voted(const plm_thinned *thinned, size_t v, const uint8_t *label)
+{
+    unsigned votes[PLM_LABEL_COUNT] = {0};
+    int most = 0;
+    for (uint32_t m = thinned->voxels.first[v]; m < thinned->voxels.first[v + 1]; m++)
+        votes[label[thinned->voxels.member[m]]]++;
+    for (int k = 1; k < PLM_LABEL_COUNT; k++)
+        if (votes[k] > votes[most]) most = k;
+    return most;
+}
+
+/* Rows of the table of features, labels and distances to the plant. */
+static plm_status write_rows(const plm_thinned *thinned, const uint8_t *label, float (*feature)[PLM_GHOST_FEATURES],
+                             plm_error *error)
+{
+    const float(*xyz)[3] = (const float(*)[3])thinned->xyz;
+    float(*plant)[3] = plm_alloc(thinned->count, sizeof *plant, error);
+    int *voice = plm_alloc(thinned->count, sizeof *voice, error);
+    plm_index *index = NULL;
+    plm_status status = plant && voice ? PLM_OK : PLM_E_MEMORY;
+    size_t count = 0;
+    for (size_t v = 0; v < thinned->count && status == PLM_OK; v++)
+        if ((voice[v] = voted(thinned, v, label)) != PLM_LABEL_OTHER) memcpy(plant[count++], xyz[v], sizeof *plant);
+    if (status == PLM_OK) status = plm_index_build((const float(*)[3])plant, count, &index, error);
+    for (size_t v = 0; v < thinned->count && status == PLM_OK; v++) {
+        uint32_t row[2];
+        float squared[2] = {0}, values[2] = {(float)voice[v]};
+        plm_index_nearest(index, xyz[v], 2, row, squared);
+        values[1] = sqrtf(squared[voice[v] != PLM_LABEL_OTHER]);
+        fwrite(feature[v], sizeof *feature, 1, stdout);
+        fwrite(values, sizeof values, 1, stdout);
+    }
+    plm_index_free(index);
+    plm_free(plant);
+    plm_free(voice);
+    return status;
+}
 
 static plm_status write_table(const plm_cloud *cloud, plm_error *error)
 {
@@ -34,17 +76,7 @@ static plm_status write_table(const plm_cloud *cloud, plm_error *error)
     if (status == PLM_OK) status = plm_ghost_features((const float(*)[3])thinned.xyz, thinned.count, feature, error);
     const uint32_t rows = (uint32_t)thinned.count;
     if (status == PLM_OK) fwrite(&rows, sizeof rows, 1, stdout);
-    for (size_t v = 0; v < thinned.count && status == PLM_OK; v++) {
-        unsigned votes[PLM_LABEL_COUNT] = {0};
-        int most = 0;
-        for (uint32_t m = thinned.voxels.first[v]; m < thinned.voxels.first[v + 1]; m++)
-            votes[label[thinned.voxels.member[m]]]++;
-        for (int k = 1; k < PLM_LABEL_COUNT; k++)
-            if (votes[k] > votes[most]) most = k;
-        const float value = (float)most;
-        fwrite(feature[v], sizeof *feature, 1, stdout);
-        fwrite(&value, sizeof value, 1, stdout);
-    }
+    if (status == PLM_OK) status = write_rows(&thinned, label, feature, error);
     plm_free(feature);
     plm_thinned_free(&thinned);
     plm_free(xyz);

@@ -210,11 +210,37 @@ static void clouds_with_known_truth_lose_floaters_only(void **unused)
     }
 }
 
+/* A small dense plant in a wide cloud of even floaters: their nearest ones are floaters too, none of the plant's. */
+static void floaters_do_not_hold_one_another(void **unused)
+{
+    (void)unused;
+    enum { SIDE = 150, STRAY = 60 };
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(SIDE * SIDE + STRAY, PLM_HAS_LABEL, &cloud, &error));
+    size_t room = SIDE * SIDE + STRAY;
+    uint64_t state = 11;
+    cloud.count = 0;
+    for (int i = 0; i < SIDE; i++)
+        for (int j = 0; j < SIDE; j++)
+            append(&cloud, &room, 0.0002 * (i + test_uniform(&state)), 0.0002 * (j + test_uniform(&state)),
+                   1e-5 * test_normal(&state), PLM_LABEL_LEAF);
+    for (int i = 0; i < STRAY; i++)
+        append(&cloud, &room, 0.15 * (test_uniform(&state) - 0.4), 0.15 * (test_uniform(&state) - 0.4),
+               0.02 + 0.1 * test_uniform(&state), PLM_LABEL_OTHER);
+    double share[PLM_LABEL_COUNT];
+    dropped(&cloud, share);
+    if (share[PLM_LABEL_OTHER] < 100 || share[PLM_LABEL_LEAF] > 0.1)
+        fail_msg("%.1f %% of the floaters dropped, %.2f %% of the leaf", share[PLM_LABEL_OTHER], share[PLM_LABEL_LEAF]);
+    plm_cloud_free(&cloud);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clean_plant_stays_whole),
         cmocka_unit_test(scattered_floaters_go),
+        cmocka_unit_test(floaters_do_not_hold_one_another),
         cmocka_unit_test(a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays),
         cmocka_unit_test(thin_stems_and_sparse_regions_stay),
         cmocka_unit_test(ground_is_neither_judged_nor_counted),
