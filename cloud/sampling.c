@@ -14,9 +14,10 @@ enum {
     SAMPLE_SPACING = 6000, /* points that decide spacing and class */
     SAMPLE_NOISE = 400,    /* quadrics; the median of these is known to about 1 % */
     QUADRIC_NEIGHBOURS = 24,
-    QUADRIC_MAXIMUM = 250, /* largest neighbourhood of a quadric ... */
-    QUADRIC_USED = 60,     /* ... of which so many strided points are fitted */
-    QUADRIC_WORK = 12000,  /* neighbours looked at in all */
+    QUADRIC_MAXIMUM = 4000, /* largest neighbourhood of a quadric: 5 sigma of a spacing of sigma / 7 ... */
+    QUADRIC_USED = 60,      /* ... of which so many strided points are fitted */
+    QUADRIC_WORK = 12000,   /* neighbours looked at in all, while there are QUADRIC_FEWEST quadrics */
+    QUADRIC_FEWEST = 48,
     QUADRIC_TERMS = 6,
     MINIMUM_POINTS = 12
 };
@@ -259,10 +260,10 @@ plm_status plm_noise_measure(const plm_index *index, const float (*xyz)[3], size
     for (int round = 0;; round++) {
         double radius;
         /* Fewer of the larger ones: their residuals scatter less. */
-        const size_t affordable = QUADRIC_WORK / wanted;
+        const size_t affordable = wanted > QUADRIC_WORK / QUADRIC_FEWEST ? QUADRIC_FEWEST : QUADRIC_WORK / wanted;
         const size_t count = plm_sample_rows(xyz, total, affordable < SAMPLE_NOISE ? affordable : SAMPLE_NOISE, sample);
         status = measure_residual(index, xyz, sample, count, wanted, &found, &radius, error);
-        if (status != PLM_OK || round == 3 || wanted == most || !(radius > 0) || radius >= ball_per_noise * found)
+        if (status != PLM_OK || round == 5 || wanted == most || !(radius > 0) || radius >= ball_per_noise * found)
             break;
         const double ratio = ball_per_noise * found / radius;
         const double larger = ceil((double)wanted * ratio * ratio);

@@ -16,6 +16,7 @@ enum {
     QUADRIC_POINTS = 120,
     QUADRIC_USUAL = 48, /* fewer leave half of the noise in the projected points */
     QUADRIC_FEWEST = 12,
+    PROJECTION_STEPS = 4,
     SUPPORT = 8, /* neighbours that support a point */
     NEAR_TOP = 8 /* SD below the top from which a point cannot become it */
 };
@@ -29,6 +30,10 @@ static const double noise_unknown = 0.5;
 static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach = 3.0;
 /* ... and against the whole plant's, as floaters have floaters beside them: splats are 20-fold uneven, a factor of 4.5. */
 static const double alone_reach = 6.0;
+/* A projection whose last step is shorter than this much of the noise is done. */
+static const double settled = 0.2;
+/* The centres of fitted discs stay inside a rim by about their own radius, give or take this part of it. */
+static const double disc_known = 0.3;
 /* Depth of a band per noise, at least. */
 static const double band_noise = 12;
 
@@ -83,25 +88,29 @@ static bool quadric_height(const patch *p, double scale, double *height, double 
     return true;
 }
 
-bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const float point[3], double noise,
-                            plm_projection *onto)
+/* Fits the quadric through the neighbours of a place but the point `without`, weighted down by distance, and moves the
+ * place onto it. False where they determine none. */
+static bool step_to_surface(const plm_index *index, const float (*xyz)[3], const float without[3], double noise,
+                            const double place[3], double moved[3], plm_projection *onto)
 {
     uint32_t row[BALL_ROOM];
     float squared[BALL_ROOM];
-    const float radius = (float)(5 * noise);
-    size_t found = plm_index_ball(index, point, radius, BALL_ROOM, row, squared);
-    if (found < QUADRIC_USUAL) found = plm_index_nearest(index, point, QUADRIC_USUAL, row, squared);
-    if (found > BALL_ROOM) found = plm_index_nearest(index, point, 1024, row, squared);
+    const float centre[3] = {(float)place[0], (float)place[1], (float)place[2]};
+    size_t found = plm_index_ball(index, centre, (float)(5 * noise), BALL_ROOM, row, squared);
+    if (found < QUADRIC_USUAL) found = plm_index_nearest(index, centre, QUADRIC_USUAL, row, squared);
+    if (found > BALL_ROOM) found = plm_index_nearest(index, centre, BALL_ROOM, row, squared);
     if (found < QUADRIC_FEWEST) return false;
     const size_t stride = (found + QUADRIC_POINTS - 1) / QUADRIC_POINTS;
     double offset[QUADRIC_POINTS][3], weight[QUADRIC_POINTS], local[QUADRIC_POINTS][3], axis[3][3];
     patch p = {local, weight, 0};
     for (size_t i = 0; i < found; i += stride) {
+        if (memcmp(xyz[row[i]], without, sizeof xyz[row[i]]) == 0) continue;
         const double d = sqrt((double)squared[i]) / (3 * noise);
         weight[p.count] = 1 / (1 + d * d * d * d);
-        for (int k = 0; k < 3; k++) offset[p.count][k] = (double)xyz[row[i]][k] - point[k];
+        for (int k = 0; k < 3; k++) offset[p.count][k] = (double)xyz[row[i]][k] - place[k];
         p.count++;
     }
+    if (p.count < QUADRIC_FEWEST) return false;
     tangent_frame((const double(*)[3])offset, weight, p.count, axis);
     for (size_t i = 0; i < p.count; i++)
         for (int k = 0; k < 3; k++) local[i][k] = plm_dot(offset[i], axis[k]);
@@ -109,9 +118,28 @@ bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const
     if (!quadric_height(&p, 5 * noise, &height, &onto->leverage) || !(fabs(height) < 4 * noise)) return false;
     onto->leverage = fmin(onto->leverage, 1);
     for (int k = 0; k < 3; k++) {
-        onto->place[k] = (float)(point[k] + height * axis[2][k]);
+        moved[k] = place[k] + height * axis[2][k];
         onto->normal[k] = axis[2][k];
     }
+    return true;
+}
+
+/* An outermost point is one that noise threw out: it would draw the surface to itself, so it has no say in it, and what lies
+ * beside it, which counts more, was thrown out like it: the step is repeated from where it led to. */
+bool plm_project_to_surface(const plm_index *index, const float (*xyz)[3], const float point[3], double noise,
+                            plm_projection *onto)
+{
+    double place[3] = {point[0], point[1], point[2]}, moved[3];
+    for (int step = 0; step < PROJECTION_STEPS; step++) {
+        if (!step_to_surface(index, xyz, point, noise, place, moved, onto)) return false;
+        double squares = 0;
+        for (int k = 0; k < 3; k++) squares += pow(moved[k] - place[k], 2), place[k] = moved[k];
+        if (squares < pow(settled * noise, 2)) break;
+    }
+    /* Steps on a tube that is thinner than the fit is wide drift along it: only what lies across the surface is noise. */
+    double across = 0;
+    for (int k = 0; k < 3; k++) across += (place[k] - point[k]) * onto->normal[k];
+    for (int k = 0; k < 3; k++) onto->place[k] = (float)(point[k] + across * onto->normal[k]);
     return true;
 }
 
@@ -192,29 +220,28 @@ static int compare_ranked(const void *a, const void *b)
 /** The heights that an end is found from. */
 typedef struct heights {
     size_t count;
-    double *at;
-    double spread; /* SD of the noise that projection leaves in them */
+    plm_height *of;
     double facing; /* mean squared cosine between the surface and the direction */
 } heights;
 
-/* The band's supported points, projected, from the highest on, as far down as one could become the top. */
+/* The band's supported points, projected, from the highest on, as far down as one could become the top. What projection leaves
+ * of the noise differs: little within a leaf, nearly all at its rim. */
 static void take_noisy(const plm_index *index, const float (*band)[3], const ranked *rank, size_t count,
                        const double direction[3], const plm_sampling *sampling, heights *out)
 {
     const double along = sampling->fused ? fused_along : noise_along;
-    double high = INFINITY, squares = 0;
+    double high = INFINITY;
     for (size_t i = 0; i < count && (out->count == 0 || rank[i].height > high - NEAR_TOP * sampling->noise); i++) {
         plm_projection onto;
         if (!plm_is_supported(index, band, rank[i].place, sampling)) continue;
         if (!plm_project_to_surface(index, band, rank[i].place, sampling->noise, &onto)) continue;
         if (out->count == 0) high = rank[i].height;
         const double across = plm_dot(onto.normal, direction), squared = across * across;
-        out->at[out->count++] =
-            onto.place[0] * direction[0] + onto.place[1] * direction[1] + onto.place[2] * direction[2];
-        squares += squared * onto.leverage + (1 - squared) * along * along;
+        out->of[out->count++] =
+            (plm_height){onto.place[0] * direction[0] + onto.place[1] * direction[1] + onto.place[2] * direction[2],
+                         sampling->noise * sqrt(squared * onto.leverage + (1 - squared) * along * along)};
         out->facing += squared;
     }
-    out->spread = sampling->noise * sqrt(squares / fmax(1, (double)out->count));
     out->facing /= fmax(1, (double)out->count);
 }
 
@@ -233,63 +260,61 @@ static plm_status rank_heights(const float (*band)[3], size_t count, const doubl
 
 /* The end behind the heights. Narrow tips: what is not as wide as a noisy point cloud's spacing has no points of its own,
  * which is as much of the tip as the spacing is of the width that the points show. */
-static void find_end(const heights *found, const plm_sampling *sampling, const double direction[3],
-                     plm_extreme *extreme)
+static void find_end(heights *found, const plm_sampling *sampling, const double direction[3], plm_extreme *extreme)
 {
     double depth;
-    const size_t used =
-        plm_end_of_sample(found->at, found->count, found->spread, &extreme->value, &extreme->std_error, &depth);
-    if (!(found->spread > 0)) return;
+    const size_t used = plm_end_of_sample(found->of, found->count, &extreme->value, &extreme->std_error, &depth);
+    if (!(found->of[0].spread > 0)) return;
     const double tip = depth * depth / (2 * (double)used * sampling->spacing);
     const double under = sampling->fused && direction[2] < 0 ? -direction[2] * found->facing * sampling->spacing : 0;
     const double noise = noise_unknown * sampling->noise;
-    extreme->std_error = sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise);
+    const double disc = sampling->extent * sqrt(fmax(1 - found->facing, 0)), unsure = disc_known * disc;
+    extreme->value += disc;
+    extreme->std_error =
+        sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise + unsure * unsure);
 }
 
 static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3],
-                               const plm_sampling *known, plm_sampling *sampling, plm_extreme *extreme,
+                               const plm_extreme_options *options, plm_sampling *sampling, plm_extreme *extreme,
                                plm_error *error)
 {
-    heights found = {.at = plm_alloc(count, sizeof *found.at, error)};
+    heights found = {.of = plm_alloc(count, sizeof *found.of, error)};
     ranked *rank = NULL;
     plm_index *index = NULL;
-    plm_status status = found.at ? rank_heights(band, count, direction, &rank, error) : PLM_E_MEMORY;
+    plm_status status = found.of ? rank_heights(band, count, direction, &rank, error) : PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_index_build(band, count, &index, error);
-    if (status == PLM_OK && known) {
-        *sampling = *known;
+    if (status == PLM_OK && options->sampling) {
+        *sampling = *options->sampling;
     } else if (status == PLM_OK) {
         *sampling = (plm_sampling){0};
         status = plm_sampling_measure(index, band, count, NULL, sampling, error);
         if (status == PLM_E_DEGENERATE) status = PLM_OK; /* a few points, or all in one place: taken as they are */
     }
+    if (options->noise > 0) sampling->noise = fmin(sampling->noise, options->noise);
+    sampling->extent = options->disc;
     if (status == PLM_OK) {
         if (sampling->noise > PLM_NOISE_FREE * sampling->spacing)
             take_noisy(index, band, rank, count, direction, sampling, &found);
         if (found.count == 0)
-            for (; found.count < count; found.count++) found.at[found.count] = rank[found.count].height;
+            for (; found.count < count; found.count++)
+                found.of[found.count] = (plm_height){rank[found.count].height, 0};
         find_end(&found, sampling, direction, extreme);
         extreme->count = count;
         extreme->sampling = *sampling;
     }
     plm_index_free(index);
     plm_free(rank);
-    plm_free(found.at);
+    plm_free(found.of);
     return status;
 }
 
-plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3], plm_extreme *extreme,
-                             plm_error *error)
-{
-    return plm_extreme_of_sampling(xyz, count, direction, NULL, extreme, error);
-}
-
-plm_status plm_extreme_of_sampling(const float (*xyz)[3], size_t count, const double direction[3],
-                                   const plm_sampling *known, plm_extreme *extreme, plm_error *error)
+plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3],
+                             const plm_extreme_options *options, plm_extreme *extreme, plm_error *error)
 {
     if (count == 0) return plm_fail(error, PLM_E_DEGENERATE, "there are no points");
     double *along = plm_alloc(count, sizeof *along, error);
     if (!along) return PLM_E_MEMORY;
-    double low = INFINITY, high = -INFINITY, thickness = known ? band_noise * known->noise : 0;
+    double low = INFINITY, high = -INFINITY, thickness = options->sampling ? band_noise * options->sampling->noise : 0;
     for (size_t i = 0; i < count; i++) {
         along[i] = xyz[i][0] * direction[0] + xyz[i][1] * direction[1] + xyz[i][2] * direction[2];
         low = fmin(low, along[i]);
@@ -305,7 +330,7 @@ plm_status plm_extreme_of_sampling(const float (*xyz)[3], size_t count, const do
         status = band ? PLM_OK : PLM_E_MEMORY;
         if (status == PLM_OK) {
             collect(xyz, along, count, floor, band);
-            status = measure_band((const float(*)[3])band, size, direction, known, &sampling, &found, error);
+            status = measure_band((const float(*)[3])band, size, direction, options, &sampling, &found, error);
         }
         plm_free(band);
         /* Points of the band's lower side must find their neighbours in it. */

@@ -12,18 +12,23 @@ typedef struct plm_extreme {
     plm_sampling sampling; /**< there */
 } plm_extreme;
 
+/** What is known beforehand; {0}: nothing. */
+typedef struct plm_extreme_options {
+    const plm_sampling *sampling; /**< spacing and noise of the surface there, which is most of the work; or NULL */
+    double noise; /**< measured elsewhere on the plant: taken where the surface there reads more, as a tube as thin as a
+                   * quadric is wide does; or 0 */
+    double disc;  /**< of splats, the radius by which fitted discs reach past their centres, added where the surface
+                   * ends side-on; 0 for other clouds, and where it is cut off rather than rimmed (the foot of a stem) */
+} plm_extreme_options;
+
 /** Finds how far the surface behind count points reaches along a unit direction. Only the outermost points are looked at
  * (some thousand, with a small index of their own), so the cost is one pass over the cloud.
  *
  * Noisy: points without support are left out, the others projected onto local quadrics. Where the surface ends behind them
  * and how sure that is say the outermost heights (traits/sample_end.h).
  * PLM_E_DEGENERATE for no points. */
-plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3], plm_extreme *extreme,
-                             plm_error *error);
-
-/** The same where spacing and noise of the surface there are known, which is most of the work. */
-plm_status plm_extreme_of_sampling(const float (*xyz)[3], size_t count, const double direction[3],
-                                   const plm_sampling *sampling, plm_extreme *extreme, plm_error *error);
+plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3],
+                             const plm_extreme_options *options, plm_extreme *extreme, plm_error *error);
 
 /** A point moved onto the surface through its neighbours. */
 typedef struct plm_projection {

@@ -27,8 +27,10 @@ static plm_status extent_between(const plm_scene *scene, const double axis[3], c
     plm_status status = PLM_OK;
     for (int i = 0; i < 2 && status == PLM_OK; i++) {
         const double sign = i ? -1 : 1, direction[3] = {sign * axis[0], sign * axis[1], sign * axis[2]};
-        status = plm_extreme_of_sampling((const float(*)[3])scene->plant, scene->plant_count, direction,
-                                         known ? &known[i].sampling : NULL, &found[i], error);
+        const plm_extreme_options options = {.sampling = known ? &known[i].sampling : NULL,
+                                             .disc = scene->sampling.extent};
+        status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, direction, &options, &found[i],
+                                   error);
     }
     if (status != PLM_OK) return status;
     if (end) memcpy(end, found, sizeof found);

@@ -11,13 +11,26 @@
 
 static const double ZENITH[3] = {0, 0, 1}, NADIR[3] = {0, 0, -1};
 
+static plm_status find_top(const plm_scene *scene, plm_extreme *top, plm_error *error)
+{
+    const plm_extreme_options options = {.disc = scene->sampling.extent};
+    return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &options, top, error);
+}
+
+/* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem. */
+static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, plm_error *error)
+{
+    const plm_status status = find_top(scene, top, error);
+    if (status != PLM_OK) return status;
+    const plm_extreme_options options = {.noise = top->sampling.noise};
+    return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
+}
+
 plm_status plm_trait_plant_height(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
     plm_extreme top, base;
-    plm_status status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &top, error);
-    if (status == PLM_OK)
-        status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &base, error);
+    const plm_status status = find_top_and_base(scene, &top, &base, error);
     if (status != PLM_OK) return status;
     out->value = top.value + base.value;
     out->std_error = hypot(top.std_error, base.std_error);
@@ -31,8 +44,7 @@ plm_status plm_trait_height_above_ground(const plm_scene *scene, const plm_organ
     (void)organ;
     if (!scene->ground || !scene->ground->found) return plm_not_applicable(out, "no ground, pot or table was found");
     plm_extreme top;
-    const plm_status status =
-        plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &top, error);
+    const plm_status status = find_top(scene, &top, error);
     if (status != PLM_OK) return status;
     out->value = top.value + scene->cloud->origin[2] - scene->ground->soil_height;
     out->std_error = hypot(top.std_error, 1.5 * top.std_error); /* the soil plane is known no better than the top */
@@ -81,8 +93,7 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
     plm_voxels voxels = {0};
     float *height = NULL;
     const float(*xyz)[3] = (const float(*)[3])scene->plant;
-    plm_status status = plm_extreme_along(xyz, scene->plant_count, NADIR, &base, error);
-    if (status == PLM_OK) status = plm_extreme_along(xyz, scene->plant_count, ZENITH, &top, error);
+    plm_status status = find_top_and_base(scene, &top, &base, error);
     const double extent = status == PLM_OK ? top.value + base.value : 0;
     if (status == PLM_OK && !(extent > 0)) status = plm_fail(error, PLM_E_DEGENERATE, "the plant has no height");
     /* 150 voxels high: fine against the traits' errors, coarse against the spacing of any cloud worth measuring */

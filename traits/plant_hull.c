@@ -188,17 +188,18 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
     return status;
 }
 
-/** Factors of the corrections: of the halves' deficit and of noise x area; their standard errors likewise. */
+/** Factors of the corrections: of the halves' deficit, of noise x area, and of the reach of a splat's discs x area; their
+ * standard errors likewise. */
 typedef struct hull_factors {
-    double deficit, noise, deficit_error, noise_error;
+    double deficit, noise, disc, deficit_error, noise_error;
 } hull_factors;
 
 static hull_factors factors_of(const plm_scene *scene, bool noisy)
 {
-    if (!noisy) return (hull_factors){2.0, 0, 0.5, 0};
-    if (scene->sampling.fused) return (hull_factors){0, 0.45, 0.5, 0.4};
-    if (scene->is_splat) return (hull_factors){1.9, 0.4, 0.8, 0.4};
-    return (hull_factors){1.0, 0.5, 0.8, 0.4};
+    if (!noisy) return (hull_factors){2.0, 0, 0, 0.5, 0};
+    if (scene->sampling.fused) return (hull_factors){0, 0.45, 0, 0.5, 0.4};
+    if (scene->is_splat) return (hull_factors){1.9, 0.4, 0.75, 0.8, 0.4};
+    return (hull_factors){1.0, 0.5, 0, 0.8, 0.4};
 }
 
 /* Values and standard errors from what was measured. */
@@ -206,13 +207,15 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
 {
     const double sigma = scene->sampling.noise;
     const hull_factors f = factors_of(scene, noisy);
-    const double deficit = m->volume - m->half_volume, shell = noisy ? sigma * m->area : 0;
-    scene->hull_volume = m->volume + f.deficit * deficit - f.noise * shell;
+    const double deficit = m->volume - m->half_volume, shell = noisy ? sigma * m->area : 0,
+                 disc = f.disc * scene->sampling.extent * m->area;
+    scene->hull_volume = m->volume + f.deficit * deficit - f.noise * shell + disc;
     scene->hull_volume_error = sqrt(pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) +
-                                    (noisy ? 0 : m->half_volume_sd * m->half_volume_sd));
+                                    pow(0.5 * disc, 2) + (noisy ? 0 : m->half_volume_sd * m->half_volume_sd));
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
     /* An area grows by two thirds of what its volume grows by, relatively (a ball). */
-    const double area_deficit = m->area - m->half_area, relative = m->volume > 0 ? f.noise * shell / m->volume : 0;
+    const double area_deficit = m->area - m->half_area,
+                 relative = m->volume > 0 ? (f.noise * shell - disc) / m->volume : 0;
     scene->hull_area = m->area + f.deficit * area_deficit - 2.0 / 3 * relative * m->area;
     scene->hull_area_error = sqrt(pow(0.8 * area_deficit, 2) + pow(relative * m->area / 3, 2));
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";

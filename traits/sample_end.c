@@ -21,15 +21,16 @@ static const double below_top = 4.0;   /* SD of noise below the highest point fr
 
 static int descending(const void *a, const void *b)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
+    const plm_height *x = a, *y = b;
+    if (x->at != y->at) return x->at < y->at ? 1 : -1;
+    return (x->spread > y->spread) - (x->spread < y->spread);
 }
 
 /* Log likelihood, up to a constant, of the heights above the last one (height[used]) for an end and a power. */
-static double smooth_likelihood(const double *height, size_t used, double end, double power)
+static double smooth_likelihood(const plm_height *height, size_t used, double end, double power)
 {
-    double sum = (double)used * (log(power) - power * log(end - height[used]));
-    for (size_t i = 0; i < used; i++) sum += (power - 1) * log(end - height[i]);
+    double sum = (double)used * (log(power) - power * log(end - height[used].at));
+    for (size_t i = 0; i < used; i++) sum += (power - 1) * log(end - height[i].at);
     return sum;
 }
 
@@ -49,15 +50,17 @@ static void blurred_powers(double y, double mean[3])
     mean[2] = (y * y + 1) * below + y * density;
 }
 
-/* The same with noise, for the powers 1 and 2. */
-static void noisy_likelihood(const double *height, size_t used, double end, double spread, double out[NOISY_POWERS])
+/* The same with noise, each height's own, for the powers 1 and 2. */
+static void noisy_likelihood(const plm_height *height, size_t used, double end, double out[NOISY_POWERS])
 {
-    double mean[3];
-    blurred_powers((end - height[used]) / spread, mean);
-    for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] = (double)used * log(power / mean[power]);
+    double mean[3], all[3];
+    for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] = 0;
     for (size_t i = 0; i < used; i++) {
-        blurred_powers((end - height[i]) / spread, mean);
-        for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] += log(mean[power - 1]);
+        const double spread = height[i].spread;
+        if (i == 0 || spread != height[i - 1].spread) blurred_powers((end - height[used].at) / spread, all);
+        blurred_powers((end - height[i].at) / spread, mean);
+        for (int power = 1; power <= NOISY_POWERS; power++)
+            out[power - 1] += log(power * mean[power - 1] / (spread * all[power]));
     }
 }
 
@@ -80,31 +83,42 @@ static void grid_moments(const double (*weight)[SMOOTH_POWERS], size_t powers, d
     *std_error = sqrt(fmax(squares / total - mean * mean, 0) + step * step / 12);
 }
 
-size_t plm_end_of_sample(double *height, size_t count, double spread, double *end, double *std_error, double *depth)
+/* How many of the sorted heights say where the end is. */
+static size_t heights_to_use(const plm_height *height, size_t count, double spread)
+{
+    size_t used = 0;
+    while (used + 1 < count && used < MOST && (used < FEWEST || height[used].at > height[0].at - noise_depth * spread))
+        used++;
+    return used;
+}
+
+size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *std_error, double *depth)
 {
     qsort(height, count, sizeof *height, descending);
-    size_t used = 0;
-    while (used + 1 < count && used < MOST && (used < FEWEST || height[used] > height[0] - noise_depth * spread))
-        used++;
-    const double span = height[0] - height[used];
+    double squares = 0;
+    for (size_t i = 0; i < count; i++) squares += height[i].spread * height[i].spread;
+    const double spread = sqrt(squares / (double)count);
+    const size_t used = heights_to_use(height, count, spread);
+    const double span = height[0].at - height[used].at;
     if (!(span > 0)) { /* all at one height */
-        *end = height[0];
+        *end = height[0].at;
         *std_error = spread;
         *depth = 0;
         return count;
     }
-    const double first = fmax(height[used], height[0] - below_top * spread), step = (height[0] + span - first) / STEPS;
+    const double first = fmax(height[used].at, height[0].at - below_top * fmax(spread, height[0].spread)),
+                 step = (height[0].at + span - first) / STEPS;
     double weight[STEPS][SMOOTH_POWERS];
     for (size_t j = 0; j < STEPS; j++) {
         const double at = first + ((double)j + 0.5) * step;
         if (spread > 0)
-            noisy_likelihood(height, used, at, spread, weight[j]);
+            noisy_likelihood(height, used, at, weight[j]);
         else
             for (size_t p = 0; p < SMOOTH_POWERS; p++)
                 weight[j][p] = smooth_likelihood(height, used, at, smooth_power[p]);
     }
     grid_moments((const double(*)[SMOOTH_POWERS])weight, spread > 0 ? NOISY_POWERS : SMOOTH_POWERS, first, step, end,
                  std_error);
-    *depth = fmax(*end - height[used], 0);
+    *depth = fmax(*end - height[used].at, 0);
     return used;
 }

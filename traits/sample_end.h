@@ -4,16 +4,20 @@
 
 #include <stddef.h>
 
+/** How high a point lies, and the SD of the noise in that, as known beforehand; 0: none (then in all of them). */
+typedef struct plm_height {
+    double at, spread;
+} plm_height;
+
 /** Where heights of points of a surface would end if it were sampled without gaps and without noise.
  * height       count of them (at least 1), any order: sorted on return, highest first
- * spread       SD of the noise in them, as known beforehand; 0: none
  * end, std_error  out, mean and standard deviation of the posterior
  * depth        out, from the end to the lowest height that was used; gives how many were
  *
  * Below the end e the surface's area grows as a power a of the depth: 1 for a flat edge, 3/2 for a round rim, 2 for a tip.
- * The highest points then have the density a (e - z)^(a - 1), blurred by the noise; end and power are found together,
+ * The highest points then have the density a (e - z)^(a - 1), blurred by the noise of each; end and power are found together,
  * all ends alike beforehand and the powers alike (P. Hall 1982, On estimating the endpoint of a distribution; here with
  * a prior in place of his known power). */
-size_t plm_end_of_sample(double *height, size_t count, double spread, double *end, double *std_error, double *depth);
+size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *std_error, double *depth);
 
 #endif

@@ -41,24 +41,6 @@ plm_status plm_trait_failed(plm_estimate *out, const char *format, ...)
     return PLM_OK;
 }
 
-plm_status plm_scene_gather(plm_scene *scene, const bool *is_plant, plm_error *error)
-{
-    const plm_cloud *cloud = scene->cloud;
-    size_t count = 0;
-    for (size_t i = 0; i < cloud->count; i++) count += is_plant[i];
-    scene->plant = plm_alloc(count, sizeof *scene->plant, error);
-    scene->plant_row = scene->plant ? plm_alloc(count, sizeof *scene->plant_row, error) : NULL;
-    if (!scene->plant_row) return PLM_E_MEMORY;
-    for (size_t i = 0; i < cloud->count; i++) {
-        if (!is_plant[i]) continue;
-        memcpy(scene->plant[scene->plant_count], cloud->xyz[i], sizeof *scene->plant);
-        scene->plant_row[scene->plant_count++] = (uint32_t)i;
-    }
-    scene->is_splat = cloud->extent != NULL;
-    scene->has_colour = cloud->rgb != NULL;
-    return PLM_OK;
-}
-
 static int compare_floats(const void *a, const void *b)
 {
     const float x = *(const float *)a, y = *(const float *)b;
@@ -76,6 +58,25 @@ static plm_status median_extent(const plm_cloud *cloud, const uint32_t *row, siz
     *extent = count ? mean[count / 2] : 0;
     plm_free(mean);
     return PLM_OK;
+}
+
+plm_status plm_scene_gather(plm_scene *scene, const bool *is_plant, plm_error *error)
+{
+    const plm_cloud *cloud = scene->cloud;
+    size_t count = 0;
+    for (size_t i = 0; i < cloud->count; i++) count += is_plant[i];
+    scene->plant = plm_alloc(count, sizeof *scene->plant, error);
+    scene->plant_row = scene->plant ? plm_alloc(count, sizeof *scene->plant_row, error) : NULL;
+    if (!scene->plant_row) return PLM_E_MEMORY;
+    for (size_t i = 0; i < cloud->count; i++) {
+        if (!is_plant[i]) continue;
+        memcpy(scene->plant[scene->plant_count], cloud->xyz[i], sizeof *scene->plant);
+        scene->plant_row[scene->plant_count++] = (uint32_t)i;
+    }
+    scene->is_splat = cloud->extent != NULL;
+    scene->has_colour = cloud->rgb != NULL;
+    if (!scene->is_splat) return PLM_OK;
+    return median_extent(cloud, scene->plant_row, scene->plant_count, &scene->sampling.extent, error);
 }
 
 /* Index and sampling of points. Points that determine no sampling (all in one place, say) are no failure: the traits

@@ -98,6 +98,34 @@ static void ellipsoids_have_their_extents_hull_and_shadow(void **unused)
         }
 }
 
+/* Far more points than the noise lets through: the highest of them are those that noise threw out, and must not draw the surface
+ * to themselves. */
+static void the_noise_of_dense_clouds_does_not_swell_a_plant(void **unused)
+{
+    (void)unused;
+    static const double radius[3] = {0.03, 0.02, 0.01}, at_home[3] = {0};
+    static const size_t points[] = {20000, 200000};
+    for (size_t i = 0; i < COUNT(points); i++) {
+        plm_error error = {0};
+        plm_cloud cloud = ellipsoid(points[i], radius, 0.0005, at_home, 5);
+        plm_measure_options options;
+        plm_measure_defaults(&options);
+        options.traits = "plant_height,convex_hull_volume";
+        options.up = PLM_UP_Z;
+        options.ground = PLM_GROUND_NONE;
+        plm_measurement m;
+        assert_ok(plm_measure(&cloud, &options, &m, &error));
+        const double volume = 4.18879020478639 * 0.03 * 0.02 * 0.01;
+        const plm_estimate *height = find(&m, "plant_height"), *hull = find(&m, "convex_hull_volume");
+        print_message("%zu points: height %.3f mm (SE %.3f) of 20, hull %.4f (SE %.4f) of 1\n", points[i],
+                      1e3 * height->value, 1e3 * height->std_error, hull->value / volume, hull->std_error / volume);
+        assert_near(height->value, 0.02, 0.00045); /* less than the noise at either end */
+        assert_near(hull->value, volume, 0.02 * volume);
+        assert_near(hull->value, volume, 2 * hull->std_error);
+        plm_measurement_free(&m);
+    }
+}
+
 /* Of a truth file: the plant's value, or NAN. */
 static double truth_of(const char *path, const char *key)
 {
@@ -159,6 +187,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ellipsoids_have_their_extents_hull_and_shadow),
+        cmocka_unit_test(the_noise_of_dense_clouds_does_not_swell_a_plant),
         cmocka_unit_test(known_plants_are_measured_within_the_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -26,15 +26,19 @@ static double normal(void)
 }
 
 /* Ends of samples whose density grows as a power of the depth below 0: bias of the ends, in root mean square errors, and
- * the share of 95 % intervals that hold 0. */
-static void try_power(double power, double spread, double *bias, double *cover)
+ * the share of 95 % intervals that hold 0. rims: what a third of the points have of the spread of the others. */
+static void try_power(double power, double spread, double rims, double *bias, double *cover)
 {
-    double *height = malloc(POINTS * sizeof *height), sum = 0, squares = 0, end, error, depth;
+    plm_height *height = malloc(POINTS * sizeof *height);
+    double sum = 0, squares = 0, end, error, depth;
     int held = 0;
     assert_non_null(height);
     for (int trial = 0; trial < TRIALS; trial++) {
-        for (int i = 0; i < POINTS; i++) height[i] = -pow(uniform(), 1 / power) + spread * normal();
-        plm_end_of_sample(height, POINTS, spread, &end, &error, &depth);
+        for (int i = 0; i < POINTS; i++) {
+            const double own = i % 3 ? spread : rims * spread;
+            height[i] = (plm_height){-pow(uniform(), 1 / power) + own * normal(), own};
+        }
+        plm_end_of_sample(height, POINTS, &end, &error, &depth);
         sum += end;
         squares += end * end;
         held += fabs(end) <= 1.96 * error;
@@ -53,7 +57,7 @@ static void an_interval_holds_the_end_of_edges_rims_and_tips(void **unused)
     for (size_t p = 0; p < COUNT(power); p++) {
         double bias, cover;
         state = 7 + p;
-        try_power(power[p], 0, &bias, &cover);
+        try_power(power[p], 0, 1, &bias, &cover);
         assert_true(fabs(bias) < 0.8);
         assert_true(cover > 0.82);
         mean += cover / COUNT(power);
@@ -68,7 +72,21 @@ static void noise_in_the_heights_does_not_move_the_end(void **unused)
     for (size_t p = 0; p < COUNT(power); p++) {
         double bias, cover;
         state = 70 + p;
-        try_power(power[p], 0.01, &bias, &cover);
+        try_power(power[p], 0.01, 1, &bias, &cover);
+        assert_true(fabs(bias) < 0.9);
+        assert_true(cover > 0.85);
+    }
+}
+
+/* Heights at a rim keep more noise than those within a leaf. */
+static void each_height_has_its_own_noise(void **unused)
+{
+    (void)unused;
+    static const double power[] = {1.0, 1.5, 2.0};
+    for (size_t p = 0; p < COUNT(power); p++) {
+        double bias, cover;
+        state = 170 + p;
+        try_power(power[p], 0.01, 4, &bias, &cover);
         assert_true(fabs(bias) < 0.9);
         assert_true(cover > 0.85);
     }
@@ -77,21 +95,23 @@ static void noise_in_the_heights_does_not_move_the_end(void **unused)
 static void heights_that_are_all_alike_have_their_end_there(void **unused)
 {
     (void)unused;
-    double height[5] = {2, 2, 2, 2, 2}, end, error, depth;
-    assert_int_equal(plm_end_of_sample(height, 5, 0, &end, &error, &depth), 5);
+    plm_height height[5] = {{2, 0}, {2, 0}, {2, 0}, {2, 0}, {2, 0}}, noisy = {2, 0.5};
+    double end, error, depth;
+    assert_int_equal(plm_end_of_sample(height, 5, &end, &error, &depth), 5);
     assert_true(end == 2 && error == 0 && depth == 0);
-    assert_int_equal(plm_end_of_sample(height, 1, 0.5, &end, &error, &depth), 1);
+    assert_int_equal(plm_end_of_sample(&noisy, 1, &end, &error, &depth), 1);
     assert_true(end == 2 && error == 0.5);
 }
 
 static void the_order_of_the_heights_leaves_no_trace(void **unused)
 {
     (void)unused;
-    double one[200], other[200], end[2], error[2], depth;
+    plm_height one[200], other[200];
+    double end[2], error[2], depth;
     state = 5;
-    for (int i = 0; i < 200; i++) one[i] = other[199 - i] = -uniform();
-    plm_end_of_sample(one, 200, 0.001, &end[0], &error[0], &depth);
-    plm_end_of_sample(other, 200, 0.001, &end[1], &error[1], &depth);
+    for (int i = 0; i < 200; i++) one[i] = other[199 - i] = (plm_height){-uniform(), 0.001};
+    plm_end_of_sample(one, 200, &end[0], &error[0], &depth);
+    plm_end_of_sample(other, 200, &end[1], &error[1], &depth);
     assert_true(end[0] == end[1] && error[0] == error[1]);
 }
 
@@ -100,6 +120,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_interval_holds_the_end_of_edges_rims_and_tips),
         cmocka_unit_test(noise_in_the_heights_does_not_move_the_end),
+        cmocka_unit_test(each_height_has_its_own_noise),
         cmocka_unit_test(heights_that_are_all_alike_have_their_end_there),
         cmocka_unit_test(the_order_of_the_heights_leaves_no_trace),
     };
