@@ -17,12 +17,13 @@ static plm_status find_top(const plm_scene *scene, plm_extreme *top, plm_error *
     return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &options, top, error);
 }
 
-/* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem. */
+/* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem, but for depth
+ * cameras, which are noisier at a stem's sides than on leaves that many views see. */
 static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, plm_error *error)
 {
     const plm_status status = find_top(scene, top, error);
     if (status != PLM_OK) return status;
-    const plm_extreme_options options = {.noise = top->sampling.noise};
+    const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise};
     return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
 }
 
