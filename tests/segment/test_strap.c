@@ -117,6 +117,18 @@ static void petioles_that_lean_on_each_other_bear_a_leaf_each(void **unused)
           &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 102, .points = 60000}, 1, 0.95);
 }
 
+/* Leaves of two blades and three, some torn by what the scan missed, are compound; one blade a leaf is simple. */
+static void blades_on_one_foot_are_leaflets(void **unused)
+{
+    (void)unused;
+    check("tomato", PLM_HABIT_COMPOUND, 102,
+          &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 102, .points = 60000}, 1, 0.94);
+    check("soybean", PLM_HABIT_COMPOUND, 101,
+          &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 101, .points = 45000, .noise = 5e-4}, 1, 0.94);
+    check("okra", PLM_HABIT_SIMPLE, 102,
+          &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 102, .points = 45000, .noise = 5e-4}, 1, 0.94);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
@@ -125,6 +137,7 @@ int main(void)
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
                                        cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
                                        cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
-                                       cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each)};
+                                       cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each),
+                                       cmocka_unit_test(blades_on_one_foot_are_leaflets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
