@@ -14,10 +14,10 @@ enum {
     SAMPLE_SPACING = 6000, /* points that decide spacing and class */
     SAMPLE_NOISE = 400,    /* quadrics; the median of these is known to about 1 % */
     QUADRIC_NEIGHBOURS = 24,
-    QUADRIC_MAXIMUM = 4000, /* largest neighbourhood of a quadric: 5 sigma of a spacing of sigma / 7 ... */
+    QUADRIC_MAXIMUM = 1500, /* largest neighbourhood of a quadric: 5 sigma of a spacing of sigma / 4 ... */
     QUADRIC_USED = 60,      /* ... of which so many strided points are fitted */
     QUADRIC_WORK = 12000,   /* neighbours looked at in all, while there are QUADRIC_FEWEST quadrics */
-    QUADRIC_FEWEST = 48,
+    QUADRIC_FEWEST = 24,
     QUADRIC_TERMS = 6,
     MINIMUM_POINTS = 12
 };

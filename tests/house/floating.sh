@@ -5,8 +5,8 @@
 # The program is built anew in build/floating: with gcc -O0 (and -ftrapping-math), gcc -O2, gcc -O3 -mfma, clang -O2:
 # traits.csv and plants.csv have to be the reference's byte for byte, with 1 and with 2 threads, and with a C library that is
 # told that the processor has no FMA. One more build, gcc -O3 -mfma -ffp-contract=fast, lets the compiler fuse what the
-# project forbids it to fuse: points near a tie then go to the other organ. What that changes is told; only its rows and
-# their states have to be the same.
+# project forbids it to fuse: points near a tie then go to the other organ, and an organ near the limit of what can be
+# measured to the other side of it. What that changes is told; only its rows have to be the same, and 99 of 100 states.
 # The -O0 build runs with invalid operations, divisions by zero and overflows trapped.
 set -eu
 source=$1
@@ -53,7 +53,8 @@ tell() {
         NR == FNR { row[FNR] = $0; rows = FNR; next }
         {
             split(row[FNR], was, ",")
-            if ($1 $2 $3 $7 $12 != was[1] was[2] was[3] was[7] was[12]) { print "was " row[FNR] "\nis  " $0; bad++ }
+            if ($1 $2 $3 $7 != was[1] was[2] was[3] was[7]) { print "was " row[FNR] "\nis  " $0; bad++ }
+            else if ($12 != was[12]) { print "was " row[FNR] "\nis  " $0; states++ }
             else if ($8 != was[8]) {
                 changed++
                 change = abs($8 - was[8])
@@ -62,7 +63,7 @@ tell() {
         }
         END {
             printf "told, not held: %d of %d values have other digits, the farthest by %.1e standard errors\n", changed, FNR - 1, most
-            exit bad > 0 || rows != FNR
+            exit bad > 0 || rows != FNR || 100 * states > FNR
         }' "$tables/reference/traits.csv" "$tables/$1/traits.csv" || fail "rows or states of $2 are others"
     echo "compared by rows and states: $2"
 }
