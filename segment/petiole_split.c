@@ -12,7 +12,7 @@ typedef struct work {
     plm_sketch *sketch;
     plm_side_groups *groups;
     plm_scratch scratch;
-    bool *allowed;
+    bool *has_leaf; /* of each group: whether a blade was found to be its leaf */
     uint32_t *source, *parent;
     uint32_t *entry; /* of each blade: its point nearest to the trunk */
     int32_t *way;    /* of each point: the blade whose way to the trunk it is on, -1 */
@@ -26,7 +26,7 @@ static plm_status start(work *w, plm_sketch *sketch, plm_side_groups *groups, pl
 {
     const size_t count = sketch->working.count, blades = groups->blade_count;
     *w = (work){.sketch = sketch, .groups = groups, .scratch = {.error = error}};
-    w->allowed = plm_scratch_take(&w->scratch, count, sizeof *w->allowed);
+    w->has_leaf = plm_scratch_take(&w->scratch, groups->count + 1, sizeof *w->has_leaf);
     w->source = plm_scratch_take(&w->scratch, count, sizeof *w->source);
     w->parent = plm_scratch_take(&w->scratch, count, sizeof *w->parent);
     w->way = plm_scratch_take(&w->scratch, count, sizeof *w->way);
@@ -88,7 +88,6 @@ static size_t split_blades(work *w)
 {
     const plm_side_groups *groups = w->groups;
     size_t count = groups->count;
-    for (size_t g = 0; g < groups->count; g++) w->allowed[g] = false; /* here: whether the group has a leaf */
     for (size_t i = 0; i < w->sketch->working.count; i++) w->way[i] = -1;
     for (size_t b = 0; b < groups->blade_count; b++) w->holder[b] = -1;
     for (;;) {
@@ -102,8 +101,8 @@ static size_t split_blades(work *w)
         const int32_t group = groups->blade_group[next];
         w->holder[next] = find_holder(w, next);
         if (w->holder[next] == next) {
-            w->number[next] = w->allowed[group] ? (int32_t)count++ : group;
-            w->allowed[group] = true;
+            w->number[next] = w->has_leaf[group] ? (int32_t)count++ : group;
+            w->has_leaf[group] = true;
         }
         mark_way(w, next);
     }

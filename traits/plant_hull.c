@@ -198,9 +198,9 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
  * standard errors likewise. */
 typedef struct hull_factors {
     double deficit, noise, disc, deficit_error, noise_error;
-    double
-        smooth; /**< deficits of less than this many shells come from smooth surfaces, where projection takes the noise
-                    * away; it stays at rims and tips, which a random half misses */
+    /** Deficits of less than this many shells come from smooth surfaces, where projection takes the noise away; it stays at
+     * rims and tips, which a random half misses. */
+    double smooth;
 } hull_factors;
 
 static hull_factors factors_of(const plm_scene *scene, bool noisy)

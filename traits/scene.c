@@ -79,15 +79,13 @@ plm_status plm_scene_gather(plm_scene *scene, const bool *is_plant, plm_error *e
     return median_extent(cloud, scene->plant_row, scene->plant_count, &scene->sampling.extent, error);
 }
 
-/* Index and sampling of points. Points that determine no sampling (all in one place, say) are no failure: the traits
- * that want it say what they miss. */
-static plm_status index_points(const plm_scene *scene, const float (*xyz)[3], const uint32_t *row, size_t count,
-                               const bool *fused, plm_index **index, plm_sampling *sampling, plm_error *error)
+/* Index and sampling of points, whose extent the caller knows. Points that determine no sampling (all in one place, say)
+ * are no failure: the traits that want it say what they miss. */
+static plm_status index_points(const float (*xyz)[3], size_t count, const bool *fused, plm_index **index,
+                               plm_sampling *sampling, plm_error *error)
 {
-    plm_status status = PLM_OK;
-    if (scene->is_splat) status = median_extent(scene->cloud, row, count, &sampling->extent, error);
-    if (status != PLM_OK || count < FEWEST_POINTS) return status;
-    status = plm_index_build(xyz, count, index, error);
+    if (count < FEWEST_POINTS) return PLM_OK;
+    plm_status status = plm_index_build(xyz, count, index, error);
     if (status != PLM_OK) return status;
     plm_sampling measured = {0};
     status = plm_sampling_measure(*index, xyz, count, fused, &measured, error);
@@ -99,8 +97,8 @@ static plm_status index_points(const plm_scene *scene, const float (*xyz)[3], co
 
 plm_status plm_scene_index(plm_scene *scene, plm_error *error)
 {
-    return index_points(scene, (const float(*)[3])scene->plant, scene->plant_row, scene->plant_count, NULL,
-                        &scene->plant_index, &scene->sampling, error);
+    return index_points((const float(*)[3])scene->plant, scene->plant_count, NULL, &scene->plant_index,
+                        &scene->sampling, error);
 }
 
 /* ---- Organs --------------------------------------------------------------------------------------------------- */
@@ -186,8 +184,11 @@ static plm_status index_organs(plm_scene *scene, plm_error *error)
 #pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < scene->organ_count; i++) {
         plm_organ *organ = &scene->organ[i];
-        status[i] = index_points(scene, (const float(*)[3])organ->xyz, organ->row, organ->count, fused, &organ->index,
-                                 &organ->sampling, NULL);
+        if (scene->is_splat)
+            status[i] = median_extent(scene->cloud, organ->row, organ->count, &organ->sampling.extent, NULL);
+        if (status[i] == PLM_OK)
+            status[i] =
+                index_points((const float(*)[3])organ->xyz, organ->count, fused, &organ->index, &organ->sampling, NULL);
     }
     plm_status result = PLM_OK;
     for (size_t i = 0; i < scene->organ_count && result == PLM_OK; i++)
