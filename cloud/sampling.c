@@ -4,6 +4,7 @@
 #include "cloud/sampling.h"
 
 #include "cloud/linear.h"
+#include "cloud/subset.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,8 +17,8 @@ enum {
     QUADRIC_NEIGHBOURS = 24,
     QUADRIC_MAXIMUM = 1500, /* largest neighbourhood of a quadric: 5 sigma of a spacing of sigma / 4 ... */
     QUADRIC_USED = 60,      /* ... of which so many strided points are fitted */
-    QUADRIC_WORK = 12000,   /* neighbours looked at in all, while there are QUADRIC_FEWEST quadrics */
-    QUADRIC_FEWEST = 24,
+    QUADRIC_MOST = 240,     /* neighbours that are looked at: beyond, the cloud is thinned instead */
+    QUADRIC_WORK = 6000,    /* neighbours looked at in all */
     QUADRIC_TERMS = 6,
     MINIMUM_POINTS = 12
 };
@@ -90,35 +91,6 @@ static float spacing_at(const float (*xyz)[3], uint32_t self, const uint32_t *ne
         largest = fmax(largest, plm_dot(d, d) - height * height);
     }
     return (float)sqrt(PLM_PI * largest / ((double)count - 0.5));
-}
-
-/* Mixes the bits of a point's coordinates (the finaliser of MurmurHash3): the order of the sample. */
-static uint64_t hash_point(const float point[3])
-{
-    uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (int i = 0; i < 3; i++) {
-        const float value = point[i] + 0.0f; /* -0 becomes 0 */
-        uint32_t bits;
-        memcpy(&bits, &value, sizeof bits);
-        hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
-        hash ^= hash >> 33;
-    }
-    hash *= 0xc4ceb9fe1a85ec53u;
-    return hash ^ (hash >> 33);
-}
-
-size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row)
-{
-    const uint64_t limit = count <= wanted ? UINT64_MAX : (uint64_t)((double)wanted / (double)count * 0x1p63) << 1;
-    size_t taken = 0;
-    for (size_t i = 0; i < count; i++)
-        if (hash_point(xyz[i]) <= limit) row[taken++] = (uint32_t)i;
-    if (taken >= MINIMUM_POINTS) return taken;
-    /* Only where most points coincide: by row then. */
-    const size_t step = count / wanted + 1;
-    taken = 0;
-    for (size_t i = 0; i < count; i += step) row[taken++] = (uint32_t)i;
-    return taken;
 }
 
 /* The nearest rows of a point but itself, at most SPACING_NEIGHBOURS of them, and their squared distances. */
@@ -215,9 +187,9 @@ static double quadric_residual(const float (*xyz)[3], const uint32_t *row, size_
     return scale * sqrt(fmax(squares, 0) / ((double)count - N));
 }
 
-/* Median over the sample of the residual of quadrics through wanted neighbours each, at most QUADRIC_USED of them
- * fitted; radius: median distance to the last of them. */
-static plm_status measure_residual(const plm_index *index, const float (*xyz)[3], const uint32_t *sample, size_t count,
+/* Median over the sample, rows of xyz, of the residual of quadrics through wanted neighbours of the index each, at most
+ * QUADRIC_USED of them fitted; radius: median distance to the last of them. */
+static plm_status measure_residual(const plm_subset *among, const float (*xyz)[3], const uint32_t *sample, size_t count,
                                    size_t wanted, double *residual, double *radius, plm_error *error)
 {
     float *value = plm_alloc(count, sizeof *value, error);
@@ -226,13 +198,13 @@ static plm_status measure_residual(const plm_index *index, const float (*xyz)[3]
     if (status == PLM_OK) {
 #pragma omp parallel for schedule(static)
         for (size_t i = 0; i < count; i++) {
-            uint32_t row[QUADRIC_MAXIMUM];
-            float squared[QUADRIC_MAXIMUM];
-            const size_t found = plm_index_nearest(index, xyz[sample[i]], wanted, row, squared);
+            uint32_t row[QUADRIC_MOST];
+            float squared[QUADRIC_MOST];
+            const size_t found = plm_index_nearest(among->index, xyz[sample[i]], wanted, row, squared);
             const size_t step = (found + QUADRIC_USED - 1) / QUADRIC_USED;
             size_t used = 0;
             for (size_t j = 0; j < found; j += step) row[used++] = row[j];
-            value[i] = used > QUADRIC_TERMS ? (float)quadric_residual(xyz, row, used) : NAN;
+            value[i] = used > QUADRIC_TERMS ? (float)quadric_residual(among->xyz, row, used) : NAN;
             reach[i] = sqrtf(squared[found - 1]);
         }
         size_t good = 0;
@@ -243,6 +215,26 @@ static plm_status measure_residual(const plm_index *index, const float (*xyz)[3]
     }
     plm_free(value);
     plm_free(reach);
+    return status;
+}
+
+/* The residual of quadrics over the area that wanted neighbours take up; sample: room for total rows. */
+static plm_status residual_over(const plm_index *index, const float (*xyz)[3], size_t total, size_t wanted,
+                                uint32_t *sample, double *residual, double *radius, plm_error *error)
+{
+    plm_subset among = {.xyz = xyz, .index = index};
+    size_t near = wanted;
+    plm_status status = PLM_OK;
+    if (wanted > QUADRIC_MOST) { /* the same area with fewer points in it */
+        near = QUADRIC_USED;
+        status = plm_subset_take(index, xyz, total, (double)near / (double)wanted, &among, error);
+    }
+    if (status == PLM_OK) {
+        const size_t affordable = QUADRIC_WORK / near;
+        const size_t count = plm_sample_rows(xyz, total, affordable < SAMPLE_NOISE ? affordable : SAMPLE_NOISE, sample);
+        status = measure_residual(&among, xyz, sample, count, near, residual, radius, error);
+    }
+    plm_subset_free(&among);
     return status;
 }
 
@@ -259,10 +251,7 @@ plm_status plm_noise_measure(const plm_index *index, const float (*xyz)[3], size
     double found = 0;
     for (int round = 0;; round++) {
         double radius;
-        /* Fewer of the larger ones: their residuals scatter less. */
-        const size_t affordable = wanted > QUADRIC_WORK / QUADRIC_FEWEST ? QUADRIC_FEWEST : QUADRIC_WORK / wanted;
-        const size_t count = plm_sample_rows(xyz, total, affordable < SAMPLE_NOISE ? affordable : SAMPLE_NOISE, sample);
-        status = measure_residual(index, xyz, sample, count, wanted, &found, &radius, error);
+        status = residual_over(index, xyz, total, wanted, sample, &found, &radius, error);
         if (status != PLM_OK || round == 5 || wanted == most || !(radius > 0) || radius >= ball_per_noise * found)
             break;
         const double ratio = ball_per_noise * found / radius;

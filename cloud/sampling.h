@@ -38,8 +38,4 @@ bool plm_neighbour_is_close(const float *squared, size_t count);
 /** Whether points of which this share is close to a neighbour are voxel means. */
 bool plm_close_share_is_fused(double share);
 
-/** Rows of about wanted of count points (all of them where there are no more), in row order, chosen by a hash of their
- * coordinates: a random thinning that does not depend on the order of rows. row has room for count. Gives how many. */
-size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint32_t *row);
-
 #endif

@@ -5,6 +5,7 @@
 #include "cloud/sampling.h"
 #include "cloud/selection.h"
 #include "cloud/spatial_order.h"
+#include "cloud/subset.h"
 #include "mesh/leaf_layers.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * darkening what lies behind a near edge (C. Boucheny, Eye-dome lighting, 2009): points have no normals to shade by. */
 #include "reports/picture_view.h"
 
-#include "cloud/sampling.h"
+#include "cloud/subset.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* reports/view_file.c: a measured plant thinned and quantised for the page's 3D view. */
 #include "reports/view_file.h"
 
-#include "cloud/sampling.h"
+#include "cloud/subset.h"
 #include "reports/base64.h"
 #include "reports/picture_view.h"
 #include "reports/run_json.h"

@@ -12,14 +12,13 @@
 enum {
     BINS = 4096,
     BAND_POINTS = 2000, /* enough to know spacing and noise by */
-    BALL_ROOM = 2048,
+    BALL_ROOM = 1024,
     QUADRIC_POINTS = 120,
     QUADRIC_USUAL = 48, /* fewer leave half of the noise in the projected points */
     QUADRIC_FEWEST = 12,
     PROJECTION_STEPS = 2,
     FIT_POINTS = 160,
-    SUPPORT = 8, /* neighbours that support a point */
-    NEAR_TOP = 8 /* SD below the top from which a point cannot become it */
+    SUPPORT = 8 /* neighbours that support a point */
 };
 
 /* Noise along the surface per noise across it, which projection does not take away. */
@@ -31,8 +30,8 @@ static const double noise_unknown = 0.5;
 static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach = 3.0;
 /* ... and against the whole plant's, as floaters have floaters beside them: splats are 20-fold uneven, a factor of 4.5. */
 static const double alone_reach = 6.0;
-/* Share of the points from which on all of them are taken to fit surfaces to. */
-static const double worth_choosing = 0.7;
+/* SD of noise by which a point is thrown off its surface at most. */
+static const double thrown_down = 3;
 /* A projection whose last step is shorter than this much of the noise is done. */
 static const double settled = 0.4;
 /* The centres of fitted discs stay inside a rim: by which part of their radius and give or take which; 0.1 and 0.7 in two
@@ -94,7 +93,7 @@ static bool quadric_height(const patch *p, double scale, double *height, double 
 
 /* Fits the quadric through the neighbours of a place but the point `without`, weighted down by distance, and moves the
  * place onto it. False where they determine none. */
-static bool step_to_surface(const plm_fit_points *points, const float without[3], double noise, const double place[3],
+static bool step_to_surface(const plm_subset *points, const float without[3], double noise, const double place[3],
                             double moved[3], plm_projection *onto)
 {
     const plm_index *index = points->index;
@@ -132,7 +131,7 @@ static bool step_to_surface(const plm_fit_points *points, const float without[3]
 
 /* An outermost point is one that noise threw out: it would draw the surface to itself, so it has no say in it, and what lies
  * beside it, which counts more, was thrown out like it: the step is repeated from where it led to. */
-bool plm_project_to_surface(const plm_fit_points *points, const float point[3], double noise, plm_projection *onto)
+bool plm_project_to_surface(const plm_subset *points, const float point[3], double noise, plm_projection *onto)
 {
     double place[3] = {point[0], point[1], point[2]}, moved[3];
     for (int step = 0; step < PROJECTION_STEPS; step++) {
@@ -149,33 +148,11 @@ bool plm_project_to_surface(const plm_fit_points *points, const float point[3], 
 }
 
 /* A ball of 5 noise holds FIT_POINTS of them: more say no more, as no more than QUADRIC_POINTS are fitted to. */
-plm_status plm_fit_points_choose(const plm_index *index, const float (*xyz)[3], size_t count,
-                                 const plm_sampling *sampling, plm_fit_points *chosen, plm_error *error)
+plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t count, const plm_sampling *sampling,
+                          plm_subset *points, plm_error *error)
 {
-    *chosen = (plm_fit_points){.xyz = xyz, .index = index};
-    const double reach = 5 * sampling->noise / sampling->spacing, share = FIT_POINTS / (PLM_PI * reach * reach);
-    if (!(share < worth_choosing) || count == 0) return PLM_OK;
-    uint32_t *row = plm_alloc(count, sizeof *row, error);
-    if (!row) return PLM_E_MEMORY;
-    const size_t taken = plm_sample_rows(xyz, count, (size_t)ceil(share * (double)count), row);
-    float(*few)[3] = plm_alloc(taken, sizeof *few, error);
-    plm_status status = few ? PLM_OK : PLM_E_MEMORY;
-    for (size_t i = 0; few && i < taken; i++) memcpy(few[i], xyz[row[i]], sizeof few[i]);
-    plm_free(row);
-    plm_index *few_index = NULL;
-    if (status == PLM_OK) status = plm_index_build((const float(*)[3])few, taken, &few_index, error);
-    if (status == PLM_OK)
-        *chosen = (plm_fit_points){(const float(*)[3])few, few_index, few, few_index};
-    else
-        plm_free(few);
-    return status;
-}
-
-void plm_fit_points_free(plm_fit_points *chosen)
-{
-    plm_index_free(chosen->few_index);
-    plm_free(chosen->few);
-    *chosen = (plm_fit_points){0};
+    const double reach = 5 * sampling->noise / sampling->spacing;
+    return plm_subset_take(index, xyz, count, FIT_POINTS / (PLM_PI * reach * reach), points, error);
 }
 
 /* ---- Support --------------------------------------------------------------------------------------------------- */
@@ -259,23 +236,29 @@ typedef struct heights {
     double facing; /* mean squared cosine between the surface and the direction */
 } heights;
 
-/* The band's supported points, projected, from the highest on, as far down as one could become the top. What projection leaves
- * of the noise differs: little within a leaf, nearly all at its rim. */
-static void take_noisy(const plm_index *index, const float (*band)[3], const plm_fit_points *points, const ranked *rank,
+/* The band's supported points, projected, from the highest on, as far down as one could come to lie among those that show the
+ * end. What projection leaves of the noise differs: little within a leaf, nearly all at its rim. */
+static void take_noisy(const plm_index *index, const float (*band)[3], const plm_subset *points, const ranked *rank,
                        size_t count, const double direction[3], const plm_sampling *sampling, heights *out)
 {
-    const double along = sampling->fused ? fused_along : noise_along;
-    double high = INFINITY;
-    for (size_t i = 0; i < count && (out->count == 0 || rank[i].height > high - NEAR_TOP * sampling->noise); i++) {
+    const double along = sampling->fused ? fused_along : noise_along, noise = sampling->noise;
+    double top = -INFINITY, squares = 0; /* the highest, and the sum of squared spreads */
+    for (size_t i = 0; i < count; i++) {
+        /* Noise may have thrown a point as far below the surface as the surface faces the direction. */
+        const double used = (double)out->count, spread = sqrt(squares / fmax(1, used)),
+                     thrown = noise * sqrt(out->facing / fmax(1, used));
+        if (out->count > PLM_END_FEWEST && rank[i].height < top - PLM_END_DEPTH * spread - thrown_down * thrown) break;
         plm_projection onto;
         if (!plm_is_supported(index, band, rank[i].place, sampling)) continue;
-        if (!plm_project_to_surface(points, rank[i].place, sampling->noise, &onto)) continue;
-        if (out->count == 0) high = rank[i].height;
+        if (!plm_project_to_surface(points, rank[i].place, noise, &onto)) continue;
         const double across = plm_dot(onto.normal, direction), squared = across * across;
-        out->of[out->count++] =
-            (plm_height){onto.place[0] * direction[0] + onto.place[1] * direction[1] + onto.place[2] * direction[2],
-                         sampling->noise * sqrt(squared * onto.leverage + (1 - squared) * along * along)};
+        const plm_height height = {onto.place[0] * direction[0] + onto.place[1] * direction[1] +
+                                       onto.place[2] * direction[2],
+                                   noise * sqrt(squared * onto.leverage + (1 - squared) * along * along)};
+        out->of[out->count++] = height;
         out->facing += squared;
+        squares += height.spread * height.spread;
+        top = fmax(top, height.at);
     }
     out->facing /= fmax(1, (double)out->count);
 }
@@ -328,8 +311,8 @@ static plm_status measure_band(const float (*band)[3], size_t count, const doubl
     if (options->noise > 0) sampling->noise = fmin(sampling->noise, options->noise);
     sampling->extent = options->disc;
     const bool noisy = status == PLM_OK && sampling->noise > PLM_NOISE_FREE * sampling->spacing;
-    plm_fit_points points = {0};
-    if (noisy) status = plm_fit_points_choose(index, band, count, sampling, &points, error);
+    plm_subset points = {0};
+    if (noisy) status = plm_fit_points(index, band, count, sampling, &points, error);
     if (status == PLM_OK) {
         if (noisy) take_noisy(index, band, &points, rank, count, direction, sampling, &found);
         if (found.count == 0)
@@ -339,7 +322,7 @@ static plm_status measure_band(const float (*band)[3], size_t count, const doubl
         extreme->count = count;
         extreme->sampling = *sampling;
     }
-    plm_fit_points_free(&points);
+    plm_subset_free(&points);
     plm_index_free(index);
     plm_free(rank);
     plm_free(found.of);

@@ -3,6 +3,7 @@
 #define PLANTIMETER_TRAITS_EXTREME_H
 
 #include "cloud/sampling.h"
+#include "cloud/subset.h"
 
 /** The farthest surface point along a direction. */
 typedef struct plm_extreme {
@@ -37,25 +38,15 @@ typedef struct plm_projection {
     double leverage;  /**< variance that is left across the surface per variance of the points, at most 1 */
 } plm_projection;
 
-/** Points that a surface is fitted to: all of a cloud, or where they lie far closer than the noise, as many of them as tell the
- * surface. */
-typedef struct plm_fit_points {
-    const float (*xyz)[3];
-    const plm_index *index;
-    float (*few)[3]; /**< owned, as its index; NULL where all are taken */
-    plm_index *few_index;
-} plm_fit_points;
-
-/** Chooses them among count points, by their coordinates (the order of rows plays no part). xyz and index (over xyz) must
- * outlive it; freed by plm_fit_points_free, which takes {0} too. Its errors are those of memory. */
-plm_status plm_fit_points_choose(const plm_index *index, const float (*xyz)[3], size_t count,
-                                 const plm_sampling *sampling, plm_fit_points *chosen, plm_error *error);
-void plm_fit_points_free(plm_fit_points *chosen);
+/** The points that surfaces are fitted to: all of count points, or where they lie far closer than the noise, as many of them
+ * as tell the surface. As plm_subset_take. */
+plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t count, const plm_sampling *sampling,
+                          plm_subset *points, plm_error *error);
 
 /** Projects a point onto the quadric through its neighbours within 5 noise but itself, weighted down by distance, again from
  * where that leads to until it stays. False where they determine no surface or the point lies beyond 4 noise off it: it is
  * then no point of the surface (a ghost, a floater). */
-bool plm_project_to_surface(const plm_fit_points *points, const float point[3], double noise, plm_projection *onto);
+bool plm_project_to_surface(const plm_subset *points, const float point[3], double noise, plm_projection *onto);
 
 /** Whether a point (one of xyz) has neighbours as near as the surface of the plant would have them. What has not (a trail
  * of ghosts off a rim, a floater) makes no extreme and no corner of a hull. */

@@ -92,8 +92,7 @@ static plm_status measure_halves(const float (*xyz)[3], size_t count, uint64_t s
 }
 
 /* The points near the hull, projected when noisy; those that belong to no surface are left out. Gives how many. */
-static size_t project_near(const plm_scene *scene, const plm_fit_points *points, bool *near, float (*out)[3],
-                           bool noisy)
+static size_t project_near(const plm_scene *scene, const plm_subset *points, bool *near, float (*out)[3], bool noisy)
 {
     const int64_t count = (int64_t)scene->plant_count;
     size_t used = 0;
@@ -167,12 +166,12 @@ static plm_status measure_skin(const plm_scene *scene, const bool *use, bool *ne
         count = near_hull(scene, use, (const double(*)[4])plane, hull_planes(raw, plane), depth, near);
         skin = plm_alloc(count, sizeof *skin, error);
         status = skin ? PLM_OK : PLM_E_MEMORY;
-        plm_fit_points points = {0};
+        plm_subset points = {0};
         if (status == PLM_OK && noisy)
-            status = plm_fit_points_choose(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
-                                           &scene->sampling, &points, error);
+            status = plm_fit_points(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
+                                    &scene->sampling, &points, error);
         if (status == PLM_OK) count = project_near(scene, &points, near, skin, noisy);
-        plm_fit_points_free(&points);
+        plm_subset_free(&points);
     }
     if (status == PLM_OK) status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, NULL, error);
     if (status == PLM_OK) status = measure_halves((const float(*)[3])skin, count, scene->options->seed, m, error);

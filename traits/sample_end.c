@@ -8,16 +8,14 @@
 #include <stdlib.h>
 
 enum {
-    FEWEST = 24, /* heights: more stand for parts of the plant further down */
-    MOST = 300,
+    MOST = 300, /* heights: more stand for parts of the plant further down */
     STEPS = 96, /* of the grid of ends */
     SMOOTH_POWERS = 4,
     NOISY_POWERS = 2 /* whole numbers: their blurred densities have closed forms */
 };
 
 static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5};
-static const double noise_depth = 3.0; /* SD of noise that the heights must span to show where it ends */
-static const double below_top = 4.0;   /* SD of noise below the highest point from which the end is sought ... */
+static const double below_top = 4.0; /* SD of noise below the highest point from which the end is sought ... */
 
 static int descending(const void *a, const void *b)
 {
@@ -87,8 +85,8 @@ static void grid_moments(const double (*weight)[SMOOTH_POWERS], size_t powers, d
 static size_t heights_to_use(const plm_height *height, size_t count, double spread)
 {
     size_t used = 0;
-    while (used + 1 < count && used < MOST && (used < FEWEST || height[used].at > height[0].at - noise_depth * spread))
-        used++;
+    const double floor = height[0].at - PLM_END_DEPTH * spread;
+    while (used + 1 < count && used < MOST && (used < PLM_END_FEWEST || height[used].at > floor)) used++;
     return used;
 }
 

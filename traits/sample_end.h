@@ -4,6 +4,10 @@
 
 #include <stddef.h>
 
+/** The end is found from so many heights at least, and from all within so many SD of noise below the highest. */
+#define PLM_END_FEWEST 24
+#define PLM_END_DEPTH  3.0
+
 /** How high a point lies, and the SD of the noise in that, as known beforehand; 0: none (then in all of them). */
 typedef struct plm_height {
     double at, spread;

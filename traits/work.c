@@ -2,8 +2,8 @@
 #include "traits/work.h"
 
 #include "cloud/neighbours.h"
-#include "cloud/sampling.h"
 #include "cloud/spatial_order.h"
+#include "cloud/subset.h"
 
 #include <math.h>
 #include <string.h>

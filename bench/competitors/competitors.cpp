@@ -26,7 +26,7 @@
 #include <sys/resource.h>
 
 extern "C" {
-#include "cloud/sampling.h"
+#include "cloud/subset.h"
 }
 
 using namespace competitors;

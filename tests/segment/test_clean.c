@@ -211,23 +211,29 @@ static void clouds_with_known_truth_lose_floaters_only(void **unused)
 }
 
 /* A small dense plant in a wide cloud of even floaters: their nearest ones are floaters too, none of the plant's. */
+/* Tufts of so few points that the sixth neighbour of each lies in the next tuft: as far apart as one another, they were
+ * taken for one sparse piece of the plant that is longer than its distance to it. */
 static void floaters_do_not_hold_one_another(void **unused)
 {
     (void)unused;
-    enum { SIDE = 150, STRAY = 60 };
+    enum { SIDE = 150, ACROSS = 4, TUFTS = ACROSS * ACROSS, TUFT = 5 };
+    const double step = 0.0002, apart = 8 * step;
     plm_error error = {0};
     plm_cloud cloud;
-    assert_ok(plm_cloud_create(SIDE * SIDE + STRAY, PLM_HAS_LABEL, &cloud, &error));
-    size_t room = SIDE * SIDE + STRAY;
+    assert_ok(plm_cloud_create(SIDE * SIDE + TUFTS * TUFT, PLM_HAS_LABEL, &cloud, &error));
+    size_t room = SIDE * SIDE + TUFTS * TUFT;
     uint64_t state = 11;
     cloud.count = 0;
     for (int i = 0; i < SIDE; i++)
         for (int j = 0; j < SIDE; j++)
-            append(&cloud, &room, 0.0002 * (i + test_uniform(&state)), 0.0002 * (j + test_uniform(&state)),
+            append(&cloud, &room, step * (i + test_uniform(&state)), step * (j + test_uniform(&state)),
                    1e-5 * test_normal(&state), PLM_LABEL_LEAF);
-    for (int i = 0; i < STRAY; i++)
-        append(&cloud, &room, 0.15 * (test_uniform(&state) - 0.4), 0.15 * (test_uniform(&state) - 0.4),
-               0.02 + 0.1 * test_uniform(&state), PLM_LABEL_OTHER);
+    for (int i = 0; i < TUFTS * TUFT; i++) {
+        const int tuft = i / TUFT;
+        append(&cloud, &room, apart * (tuft / ACROSS) + step * test_uniform(&state),
+               apart * (tuft % ACROSS) + step * test_uniform(&state), 2 * apart + step * test_uniform(&state),
+               PLM_LABEL_OTHER);
+    }
     double share[PLM_LABEL_COUNT];
     dropped(&cloud, share);
     if (share[PLM_LABEL_OTHER] < 100 || share[PLM_LABEL_LEAF] > 0.1)
