@@ -125,6 +125,26 @@ static json_t *plan_json(const plm_run_plant *plant)
     return finish_array(stages, is_broken);
 }
 
+/* The iterative fits behind the values: how well they were determined, and why they ended. */
+static json_t *fits_json(const plm_measurement *measurement)
+{
+    json_t *fits = json_array();
+    bool is_broken = false;
+    for (size_t i = 0; i < measurement->value_count; i++) {
+        const plm_trait_value *value = &measurement->value[i];
+        const plm_fit_note *fit = &value->estimate.fit;
+        if (fit->step_count == 0) continue;
+        builder b = begin_object();
+        set(&b, "trait", json_string(value->trait->name));
+        set(&b, "organ_id", json_integer(value->organ_id));
+        set(&b, "steps", json_integer(fit->step_count));
+        set(&b, "condition", number(fit->condition));
+        set(&b, "end", json_string(fit->end));
+        append(fits, &is_broken, finish(&b));
+    }
+    return finish_array(fits, is_broken);
+}
+
 static json_t *warnings_json(const plm_run_plant *plant)
 {
     json_t *warnings = json_array();
@@ -267,6 +287,7 @@ plm_status plm_run_plant_json(const plm_run_plant *plant, json_t **object, plm_e
     if (plant->time) set(&b, "time_budget", time_json(plant->time));
     if (plant->time && plant->time->target_count) set(&b, "target_error", targets_json(plant->time));
     set(&b, "plan", plan_json(plant));
+    if (measurement) set(&b, "fits", fits_json(measurement));
     set(&b, "warnings", warnings_json(plant));
     set(&b, "files", files_json(plant));
     *object = finish(&b);

@@ -20,6 +20,7 @@ typedef struct plm_axis {
     size_t point_count;      /**< points that the line rests on */
     unsigned flags;          /**< PLM_FLAG_... */
     const char *method;      /**< "tube fit" or "centre line": static text */
+    plm_fit_note fit;        /**< of the tube that radius and line are from, or were tried to be from */
     int32_t carrier;         /**< petiole: number of the stem it stands on; branch: of the stem it leaves; -1: none */
     double node, node_error; /**< length along the carrier from its base to here; NAN without carrier */
     double insertion, insertion_error; /**< angle of direction against the carrier's axis at the node; NAN without */

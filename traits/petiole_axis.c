@@ -373,6 +373,7 @@ static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
                        .noise = p->noise,
                        .point_count = count,
                        .method = line == &p->line.curve ? "centre line" : "tube fit"};
+    if (p->has_tube) axis->fit = plm_tube_note(&p->tube);
     plm_curve_point(line, axis->begin, axis->base);
     plm_curve_point(line, axis->end, axis->tip);
     direction_between(line, axis->begin, axis->end, axis->direction);

@@ -20,6 +20,7 @@ static void rests_on(const plm_axis *axis, plm_estimate *out)
     out->point_count = axis->point_count;
     out->flags |= axis->flags;
     out->method = axis->method;
+    out->fit = axis->fit;
     if (axis->noise > axis->radius || axis->point_count < 100) out->flags |= PLM_FLAG_LOW_DENSITY;
 }
 

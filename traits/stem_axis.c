@@ -175,6 +175,7 @@ static plm_status fit(const plm_scene *scene, const plm_tube_points *points, plm
     plm_tube tube;
     status = plm_tube_fit((const double(*)[3])points->xyz, points->count, &line.curve, true, &tube, error);
     if (status == PLM_E_MEMORY) return status;
+    if (status == PLM_OK) axis->fit = plm_tube_note(&tube);
     if (status == PLM_OK && fabs(tube.radius[1]) < tube.radius[0]) {
         axis->radius = plm_tube_radius(&tube, 0, &axis->radius_error);
         axis->taper = tube.radius[1];

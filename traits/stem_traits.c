@@ -32,6 +32,7 @@ plm_status plm_trait_stem_length(const plm_scene *scene, const plm_organ *organ,
     out->point_count = axis->point_count;
     out->flags |= axis->flags;
     out->method = axis->method;
+    out->fit = axis->fit;
     return PLM_OK;
 }
 
@@ -46,5 +47,6 @@ plm_status plm_trait_stem_inclination(const plm_scene *scene, const plm_organ *o
     out->point_count = axis->point_count;
     out->flags |= axis->flags;
     out->method = axis->method;
+    out->fit = axis->fit;
     return PLM_OK;
 }

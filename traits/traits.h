@@ -52,6 +52,14 @@ enum {
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;
 
+/** What became of the iterative fit behind an estimate. */
+typedef struct plm_fit_note {
+    int step_count; /**< 0: no such fit */
+    double
+        condition; /**< of the normal matrix with unit diagonal: large where the points leave parameters undetermined */
+    const char *end; /**< why it ended: static text */
+} plm_fit_note;
+
 /** One measured value. SI. */
 typedef struct plm_estimate {
     double value;
@@ -60,7 +68,8 @@ typedef struct plm_estimate {
     plm_state state;
     unsigned flags;     /**< PLM_FLAG_... of segment.h */
     const char *method; /**< how: static text, "tube fit", "alpha shape", ... */
-    char reason[160];   /**< why it is not_applicable or failed, and what to change */
+    plm_fit_note fit;
+    char reason[160]; /**< why it is not_applicable or failed, and what to change */
 } plm_estimate;
 
 typedef struct plm_scene plm_scene; /* traits/scene.h: the plant as the trait functions see it */

@@ -91,6 +91,7 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
                                 "%zu points within %.1f mm of the place of measurement determine no tube; "
                                 "a denser scan there is needed",
                                 count, 1e3 * reach);
+    out->fit = plm_tube_note(&tube);
     double place[3], fit_error;
     plm_curve_point(&organ->axis->line, t, place);
     const double fit = 2 * plm_tube_radius(&tube, plm_curve_foot(&tube.axis, place), &fit_error);

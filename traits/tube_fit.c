@@ -335,6 +335,11 @@ plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *s
     return status;
 }
 
+plm_fit_note plm_tube_note(const plm_tube *tube)
+{
+    return (plm_fit_note){tube->iteration_count, tube->condition, plm_fit_end_name(tube->end)};
+}
+
 double plm_tube_radius(const plm_tube *tube, double t, double *std_error)
 {
     const int a = 2 * plm_curve_basis_count(&tube->axis);

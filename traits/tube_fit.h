@@ -5,6 +5,7 @@
 #include "cloud/cloud.h"
 #include "cloud/trust_region.h"
 #include "traits/axis_curve.h"
+#include "traits/traits.h"
 
 enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 2, PLM_TUBE_SECTORS = 24 };
 
@@ -35,6 +36,9 @@ typedef struct plm_tube {
  * PLM_E_DEGENERATE  fewer points than twice the parameters, or points that determine no tube. */
 plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
                         plm_error *error);
+
+/** What an estimate tells of the fit. */
+plm_fit_note plm_tube_note(const plm_tube *tube);
 
 /** Radius at t, and its standard error by the covariance. */
 double plm_tube_radius(const plm_tube *tube, double t, double *std_error);

@@ -8,6 +8,9 @@ for effort in fast balanced; do
         awk -v effort=$effort '{ print effort, ($1 >= 60000 ? "all" : $1 > 48000 && $1 < 52000 ? "thinned" : $1) }'
     sed -n 's/^element vertex //p' $effort/$plant.labelled.ply | awk '{ print "labelled rows", ($1 >= 60000 ? "all" : $1) }'
 done
+# The fit behind a value: its steps, its condition and why it ended.
+tr -d ' \n' <balanced/run.json | grep -o '{"trait":"stem_diameter","organ_id":0,"steps":[1-9][0-9]*,"condition":[0-9.]*,"end":"[a-z]*"}' |
+    sed 's/"steps":[0-9]*,"condition":[0-9.]*/"steps":S,"condition":C/'
 # What half of the points give is what all give, nearly.
 paste -d, fast/plants.csv balanced/plants.csv | awk -F, '
     NR == 1 { n = NF / 2; for (i = 1; i <= n; i++) name[i] = $i }

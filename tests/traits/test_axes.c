@@ -4,6 +4,7 @@
 #include <jansson.h>
 
 #include "cloud/linear.h"
+#include "cloud/trust_region.h"
 #include "io/io.h"
 #include "support/tubes.h"
 #include "traits/traits.h"
@@ -84,6 +85,25 @@ static void a_clean_plant_is_measured_to_its_built_angles_and_lengths(void **unu
     assert_int_equal(find(&plant, "internode_length", 0)->state, PLM_STATE_NOT_APPLICABLE);
     assert_int_equal(find(&plant, "internode_length", 1)->state, PLM_STATE_NOT_APPLICABLE); /* the same node */
     assert_near(find(&plant, "internode_length", 2)->value, 0.03, 3e-4);
+    plm_measurement_free(&plant);
+}
+
+/* Every value of a stem tells of the fit behind it; what was not measured tells of none. */
+static void fits_tell_steps_condition_and_end(void **unused)
+{
+    (void)unused;
+    plm_cloud cloud = made_plant(0);
+    plm_measurement plant = measure(&cloud);
+    static const char *const fitted[] = {"stem_diameter", "stem_length", "stem_inclination", "petiole_inclination",
+                                         "petiole_diameter"};
+    for (size_t i = 0; i < sizeof fitted / sizeof *fitted; i++) {
+        const plm_fit_note *fit = &find(&plant, fitted[i], 0)->fit;
+        assert_in_range(fit->step_count, 1, 500);
+        assert_true(fit->condition >= 1 && fit->condition < 1e6);
+        assert_true(!strcmp(fit->end, plm_fit_end_name(PLM_FIT_SMALL_STEP)) ||
+                    !strcmp(fit->end, plm_fit_end_name(PLM_FIT_SMALL_GAIN)));
+    }
+    assert_int_equal(find(&plant, "internode_length", 0)->fit.step_count, 0);
     plm_measurement_free(&plant);
 }
 
@@ -206,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
+        cmocka_unit_test(fits_tell_steps_condition_and_end),
         cmocka_unit_test(noise_is_covered_by_the_standard_errors),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
         cmocka_unit_test(labelled_clouds_give_the_true_diameters_and_angles),
