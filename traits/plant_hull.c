@@ -6,6 +6,7 @@
  * volume; for a sheet the volume is noise over thickness, which the standard error shows. */
 #include "traits/extreme.h"
 #include "traits/families.h"
+#include "traits/near_hull.h"
 #include "traits/scene.h"
 
 #include <math.h>
@@ -18,48 +19,6 @@ enum { HALVES = 12, MOST_PEELS = 24 };
 typedef struct hull_measure {
     double volume, area, half_volume, half_area, half_volume_sd;
 } hull_measure;
-
-static double plane_depth(const double plane[4], const float p[3])
-{
-    return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] - plane[3];
-}
-
-/* Outward planes of a closed hull: normal and offset of each triangle. */
-static size_t hull_planes(const plm_mesh *hull, double (*plane)[4])
-{
-    size_t used = 0;
-    for (size_t t = 0; t < hull->triangle_count; t++) {
-        const double *a = hull->vertex[hull->triangle[t][0]], *b = hull->vertex[hull->triangle[t][1]];
-        const double *c = hull->vertex[hull->triangle[t][2]];
-        const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-        double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-        const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!(length > 0)) continue;
-        double offset = 0;
-        for (int k = 0; k < 3; k++) {
-            plane[used][k] = n[k] / length;
-            offset += plane[used][k] * (a[k] + hull->origin[k]);
-        }
-        plane[used++][3] = offset;
-    }
-    return used;
-}
-
-/* Rows that are used and within depth of the hull. */
-static size_t near_hull(const plm_scene *scene, const bool *use, const double (*plane)[4], size_t planes, double depth,
-                        bool *near)
-{
-    const int64_t count = (int64_t)scene->plant_count;
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < count; i++) {
-        near[i] = false;
-        if (!use[i]) continue;
-        for (size_t k = 0; k < planes && !near[i]; k++) near[i] = plane_depth(plane[k], scene->plant[i]) > -depth;
-    }
-    size_t found = 0;
-    for (int64_t i = 0; i < count; i++) found += near[i];
-    return found;
-}
 
 static uint64_t mix(uint64_t z)
 {
@@ -135,11 +94,10 @@ static plm_status peel(plm_scene *scene, bool *use, bool *near, plm_error *error
     const int64_t count = (int64_t)scene->plant_count;
     plm_status status = PLM_OK;
     for (int round = 0; round < MOST_PEELS && status == PLM_OK; round++) {
-        double(*plane)[4] = plm_alloc(scene->hull.triangle_count, sizeof *plane, error);
-        if (!plane) return PLM_E_MEMORY;
-        near_hull(scene, use, (const double(*)[4])plane, hull_planes(&scene->hull, plane), depth, near);
-        plm_free(plane);
-        size_t dropped = 0;
+        size_t found, dropped = 0;
+        status = plm_near_hull(&scene->hull, (const float(*)[3])scene->plant, use, scene->plant_count, depth, near,
+                               &found, error);
+        if (status != PLM_OK) break;
 #pragma omp parallel for schedule(dynamic, 64) reduction(+ : dropped)
         for (int64_t i = 0; i < count; i++) {
             if (!near[i]) continue;
@@ -156,26 +114,21 @@ static plm_status peel(plm_scene *scene, bool *use, bool *near, plm_error *error
 static plm_status measure_skin(const plm_scene *scene, const bool *use, bool *near, bool noisy, hull_measure *m,
                                plm_error *error)
 {
-    const plm_mesh *raw = &scene->hull;
-    double(*plane)[4] = plm_alloc(raw->triangle_count, sizeof *plane, error);
-    float(*skin)[3] = NULL;
-    plm_status status = plane ? PLM_OK : PLM_E_MEMORY;
-    size_t count = 0;
-    if (status == PLM_OK) {
-        const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
-        count = near_hull(scene, use, (const double(*)[4])plane, hull_planes(raw, plane), depth, near);
-        skin = plm_alloc(count, sizeof *skin, error);
-        status = skin ? PLM_OK : PLM_E_MEMORY;
-        plm_subset points = {0};
-        if (status == PLM_OK && noisy)
-            status = plm_fit_points(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
-                                    &scene->sampling, &points, error);
-        if (status == PLM_OK) count = project_near(scene, &points, near, skin, noisy);
-        plm_subset_free(&points);
-    }
+    const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
+    size_t count;
+    plm_status status = plm_near_hull(&scene->hull, (const float(*)[3])scene->plant, use, scene->plant_count, depth,
+                                      near, &count, error);
+    if (status != PLM_OK) return status;
+    float(*skin)[3] = plm_alloc(count, sizeof *skin, error);
+    if (!skin) return PLM_E_MEMORY;
+    plm_subset points = {0};
+    if (noisy)
+        status = plm_fit_points(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
+                                &scene->sampling, &points, error);
+    if (status == PLM_OK) count = project_near(scene, &points, near, skin, noisy);
+    plm_subset_free(&points);
     if (status == PLM_OK) status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, NULL, error);
     if (status == PLM_OK) status = measure_halves((const float(*)[3])skin, count, scene->options->seed, m, error);
-    plm_free(plane);
     plm_free(skin);
     return status;
 }
