@@ -13,12 +13,13 @@
 
 static const double WINDOW = 3;                         /* in steps of a working cell */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
-static const double WIDE = 1.6;    /* widths of the tube: a station beyond is blade, one below is tube */
-static const double BLADE = 3;     /* widths of the tube that the last leaflet reaches at least */
-static const double NEAR = 3.2;    /* points within so many widths of a tube station's middle are of the tube */
-static const double FOOT_LINE = 2; /* length of the petiole that gives its line at the foot, in R */
-static const double FOOT = 0.35;   /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1; /* of a step, in the search for the change */
+static const double WIDE = 1.6;        /* widths of the tube: a station beyond is blade, one below is tube */
+static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
+static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
+static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
+static const double FOOT = 0.35;       /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1;     /* of a step, in the search for the change */
+static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
 enum { BEFORE = 6, AFTER = 9, FEWEST_STATIONS = 6, STATIONS_MOST = 5000 };
 
 typedef struct work {
@@ -346,6 +347,8 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     const size_t split = compound ? last_split(way, first) : only_split(way, first);
     if (split <= first || split >= way->station_count) return PLM_OK;
     way->junction = change(way, first, split);
+    if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
+        return PLM_OK;
     double origin[3] = {0}, along[3] = {0};
     if (compound)
         relabel_compound(w);

@@ -157,8 +157,10 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
 {
     plm_side_groups groups = {0};
     plm_status status = plm_side_groups_find(sketch, &groups, error);
-    if (status == PLM_OK && sketch->scale.has_tubes && !sketch->stem.count)
+    if (status == PLM_OK && sketch->scale.has_tubes && !sketch->stem.count) {
         status = plm_side_groups_split(sketch, &groups, error);
+        if (status == PLM_OK) status = plm_side_groups_young(sketch, &groups, error);
+    }
     if (status == PLM_OK) {
         sketch->habit = habit != PLM_HABIT_UNKNOWN ? habit : guess_habit(sketch, &groups);
         if (sketch->habit == PLM_HABIT_STRAP && sketch->stem.count)

@@ -17,9 +17,8 @@ typedef struct branch_set {
 
 typedef struct work {
     const plm_graph *graph;
-    const float *distance;
-    double reach;
-    size_t least;
+    const plm_merge_rule *rule;
+    double reach; /* at the present meeting */
     int32_t *branch;
     size_t count;
     uint32_t *parent, *next; /* next: the members of a set as a list */
@@ -41,7 +40,7 @@ static uint32_t root_of(work *w, uint32_t i)
 
 static bool is_branch(const work *w, const branch_set *set, float level)
 {
-    return !set->is_trunk && (double)set->tip - level > w->reach && set->size >= w->least;
+    return !set->is_trunk && (double)set->tip - level > w->reach && set->size >= w->rule->least;
 }
 
 /* The set ends here, as a branch of its own. */
@@ -83,12 +82,36 @@ static void meet(work *w, uint32_t here, uint32_t other, float level)
     if (ends) w->set[united].is_trunk = true;
 }
 
-plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double reach, size_t least, int32_t *branch,
-                          size_t *count, plm_error *error)
+static bool may_meet(const plm_merge_rule *rule, uint32_t a, uint32_t b)
+{
+    return !rule->apart || rule->apart[a] < 0 || rule->apart[b] < 0 || rule->apart[a] == rule->apart[b];
+}
+
+/* Points from far to near, each with those of its neighbours that were seen before. */
+static void sweep(work *w, const plm_visit *order, size_t visits)
+{
+    const plm_graph *graph = w->graph;
+    for (size_t k = 0; k < visits; k++) {
+        const uint32_t i = order[k].point;
+        w->set[i].size = 1; /* seen */
+        w->reach = w->rule->reach[i];
+        for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++)
+            if (w->set[graph->edge[e]].size && may_meet(w->rule, i, graph->edge[e]))
+                meet(w, i, graph->edge[e], order[k].distance);
+    }
+    for (size_t k = 0; k < visits; k++) {
+        const uint32_t i = order[k].point;
+        w->reach = w->rule->reach[i];
+        if (w->parent[i] == i && is_branch(w, &w->set[i], 0)) end_branch(w, &w->set[i]);
+    }
+}
+
+plm_status plm_merge_tree_by(const plm_graph *graph, const plm_merge_rule *rule, int32_t *branch, size_t *count,
+                             plm_error *error)
 {
     plm_scratch scratch = {.error = error};
     plm_visit *order = plm_scratch_take(&scratch, graph->count, sizeof *order);
-    work w = {.graph = graph, .distance = distance, .reach = reach, .least = least, .branch = branch};
+    work w = {.graph = graph, .rule = rule, .branch = branch};
     w.parent = plm_scratch_take(&scratch, graph->count, sizeof *w.parent);
     w.next = plm_scratch_take(&scratch, graph->count, sizeof *w.next);
     w.set = plm_scratch_take(&scratch, graph->count, sizeof *w.set);
@@ -96,21 +119,26 @@ plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double 
     for (uint32_t i = 0; !scratch.failed && i < graph->count; i++) {
         branch[i] = NONE;
         w.parent[i] = i;
-        w.set[i] = (branch_set){.tip = distance[i], .head = i, .tail = i, .size = 0};
-        if (isfinite(distance[i])) order[visits++] = (plm_visit){distance[i], i};
+        w.set[i] = (branch_set){.tip = rule->distance[i], .head = i, .tail = i, .size = 0};
+        if (isfinite(rule->distance[i])) order[visits++] = (plm_visit){rule->distance[i], i};
     }
-    if (visits) qsort(order, visits, sizeof *order, plm_far_first);
-    for (size_t k = 0; k < visits; k++) {
-        const uint32_t i = order[k].point;
-        w.set[i].size = 1; /* seen */
-        for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++)
-            if (w.set[graph->edge[e]].size) meet(&w, i, graph->edge[e], order[k].distance);
-    }
-    for (size_t k = 0; k < visits; k++) {
-        const uint32_t i = order[k].point;
-        if (w.parent[i] == i && is_branch(&w, &w.set[i], 0)) end_branch(&w, &w.set[i]);
+    if (visits) {
+        qsort(order, visits, sizeof *order, plm_far_first);
+        sweep(&w, order, visits);
     }
     *count = w.count;
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double reach, size_t least, int32_t *branch,
+                          size_t *count, plm_error *error)
+{
+    float *same = plm_alloc(graph->count, sizeof *same, error);
+    if (!same) return PLM_E_MEMORY;
+    for (size_t i = 0; i < graph->count; i++) same[i] = (float)reach;
+    const plm_merge_rule rule = {.distance = distance, .reach = same, .least = least};
+    const plm_status status = plm_merge_tree_by(graph, &rule, branch, count, error);
+    plm_free(same);
+    return status;
 }

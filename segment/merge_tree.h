@@ -20,4 +20,16 @@ int plm_far_first(const void *a, const void *b);
 plm_status plm_merge_tree(const plm_graph *graph, const float *distance, double reach, size_t least, int32_t *branch,
                           size_t *count, plm_error *error);
 
+/** What makes a branch, where it is not the same all over. */
+typedef struct plm_merge_rule {
+    const float *distance;
+    const float *reach;   /**< asked of branches that meet at a point; INFINITY: they never end there */
+    const int32_t *apart; /**< points of two different colours do not meet; negative: of no colour; NULL: all meet */
+    size_t least;
+} plm_merge_rule;
+
+/** The same by a rule. */
+plm_status plm_merge_tree_by(const plm_graph *graph, const plm_merge_rule *rule, int32_t *branch, size_t *count,
+                             plm_error *error);
+
 #endif

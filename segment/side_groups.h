@@ -32,6 +32,11 @@ plm_status plm_side_groups_find(plm_sketch *sketch, plm_side_groups *groups, plm
  * Writes sketch->group. */
 plm_status plm_side_groups_split(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
 
+/** For plants without a stem: finds the young leaves, whose blades are so small that they pass as tubes: ends of tubes
+ * with no or little blade. Those without any get a group each (or keep one that has no blade), and the outer part of all
+ * becomes blade. Writes sketch->group and is_tube. */
+plm_status plm_side_groups_young(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
+
 void plm_side_groups_free(plm_side_groups *groups);
 
 /** Blades smaller than this are no leaves. */

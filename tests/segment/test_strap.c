@@ -117,6 +117,16 @@ static void petioles_that_lean_on_each_other_bear_a_leaf_each(void **unused)
           &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 102, .points = 60000}, 1, 0.95);
 }
 
+/* The youngest leaf of a rosette is as wide as the ball that tells tubes: an end that stands out of the core all the same. */
+static void the_youngest_leaf_of_a_rosette_counts(void **unused)
+{
+    (void)unused;
+    check("arabidopsis", PLM_HABIT_ROSETTE, 303,
+          &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 303, .points = 60000}, 1, 0.95);
+    check("arabidopsis", PLM_HABIT_ROSETTE, 306,
+          &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 306, .points = 45000, .noise = 5e-4}, 1, 0.94);
+}
+
 /* Leaves of two blades and three, some torn by what the scan missed, are compound; one blade a leaf is simple. */
 static void blades_on_one_foot_are_leaflets(void **unused)
 {
@@ -138,6 +148,7 @@ int main(void)
                                        cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
                                        cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
                                        cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each),
+                                       cmocka_unit_test(the_youngest_leaf_of_a_rosette_counts),
                                        cmocka_unit_test(blades_on_one_foot_are_leaflets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
