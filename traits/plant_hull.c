@@ -151,16 +151,21 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
 typedef struct hull_factors {
     double deficit, noise, disc, deficit_error, noise_error;
     /** Deficits of less than this many shells come from smooth surfaces, where projection takes the noise away; it stays at
-     * rims and tips, which a random half misses. */
+     * rims and tips, which a random half of the points misses. */
     double smooth;
+    double area, area_error; /**< by how much of what noise adds to the volume it adds to the area, relatively */
 } hull_factors;
+
+/* The area of a ball grows by two thirds of what its volume grows by; noise thickens the flat hulls of plants rather than
+ * widening them. */
+static const double ball = 2.0 / 3;
 
 static hull_factors factors_of(const plm_scene *scene, bool noisy)
 {
-    if (!noisy) return (hull_factors){2.0, 0, 0, 0.5, 0, 0};
-    if (scene->sampling.fused) return (hull_factors){0, 0.45, 0, 0.5, 0.4, 0};
-    if (scene->is_splat) return (hull_factors){1.9, 0.4, 0.4, 0.8, 0.4, 0};
-    return (hull_factors){3.5, 2.3, 0, 1.0, 0.4, 0.13};
+    if (!noisy) return (hull_factors){2.0, 0, 0, 0.5, 0, 0, 0, 0};
+    if (scene->sampling.fused) return (hull_factors){0, 0.45, 0, 0.5, 0.4, 0, 0.2, 0.33};
+    if (scene->is_splat) return (hull_factors){1.9, 0.4, 0.4, 0.8, 0.4, 0, ball, 0.33};
+    return (hull_factors){3.5, 2.3, 0, 1.0, 0.4, 0.13, 0.5, 0.15};
 }
 
 /* Values and standard errors from what was measured. */
@@ -175,11 +180,11 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
     scene->hull_volume_error = sqrt(pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) + disc * disc +
                                     (noisy ? 0 : m->half_volume_sd * m->half_volume_sd));
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
-    /* An area grows by two thirds of what its volume grows by, relatively (a ball). */
-    const double area_deficit = m->area - m->half_area,
-                 relative = m->volume > 0 ? (f.noise * rims * shell - disc) / m->volume : 0;
-    scene->hull_area = m->area + f.deficit * area_deficit - 2.0 / 3 * relative * m->area;
-    scene->hull_area_error = sqrt(pow(0.8 * area_deficit, 2) + pow(relative * m->area / 3, 2));
+    const double area_deficit = m->area - m->half_area;
+    const double per_volume = m->volume > 0 ? m->area / m->volume : 0, added = f.noise * rims * shell * per_volume;
+    scene->hull_area = m->area + f.deficit * area_deficit - f.area * added + ball * disc * per_volume;
+    scene->hull_area_error =
+        sqrt(pow(0.8 * area_deficit, 2) + pow(f.area_error * added, 2) + pow(ball * disc * per_volume, 2));
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";
 }
 
