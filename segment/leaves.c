@@ -31,7 +31,8 @@ bool plm_leaves_look_like_tubes(const plm_sketch *sketch)
     return sketch->scale.rises && 2 * tubes > sketch->working.count;
 }
 
-/* And most of the tubes are off the stem: a bare stem is none of this. */
+/* No petioles and branches are half of what is off the stem, blades are: where tubes are, they are folded straps, or blades
+ * that noise makes round. Where most of the tubes are on the stem, it is a bare one. */
 static bool leaves_are_tubes(const plm_sketch *sketch)
 {
     size_t tubes = 0, stem = 0;
@@ -39,7 +40,7 @@ static bool leaves_are_tubes(const plm_sketch *sketch)
         tubes += sketch->is_tube[i];
         stem += sketch->is_stem[i];
     }
-    return sketch->stem.count && 2 * stem < tubes && plm_leaves_look_like_tubes(sketch);
+    return sketch->stem.count && 2 * stem < tubes && 2 * (tubes - stem) > sketch->working.count - stem;
 }
 
 static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *groups)

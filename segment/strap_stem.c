@@ -20,12 +20,14 @@ static const double SHELL = 0.3;          /* half thickness of the surface, in r
 static const double CLOSED = 0.75;        /* share of the directions in which a closed tube has points */
 static const double OPEN = 0.45;          /* less is a blade */
 static const double WIDE = 1.4;           /* of the lower stem's radius: the stem has become a whorl of leaves */
-static const double WIDENED = 1.1;        /* the same beyond the last fork, of the least radius below */
+static const double WIDENED =
+    1.1; /* the same beyond the last fork, and of the radius without feet: of the least below */
 static const double GAIN = 0.4, GAIN_WIDE = 0.12;  /* how far the line follows a circle; one that is too wide */
 static const double FOOT_LIKE = 1.2;               /* wider than this: of a foot and the stem together */
 static const double FOOT_POWER = 8;                /* by which wide circles count less */
 static const double CLOSED_LEAST = 0.05;           /* an open circle counts so much */
-static const double MARGIN = 1.05, SCATTERS = 2.5; /* surface: within so many radii and scatters of the line */
+static const double MARGIN = 1.07, SCATTERS = 2.5; /* surface: within so many radii and scatters of the line, ... */
+static const double NOISE_SCATTERS = 1.5;          /* ... this many as far as they are noise */
 static const double FARTHEST = 3.3;                /* more than margin and scatters can come to */
 static const double NEAR_SURFACE = 1.6;            /* points within so many radii tell the scatter */
 static const double END_CAP = 0.3;                 /* the stem's end rises so many radii above its last node */
@@ -61,11 +63,16 @@ static double low_radius(const tube *t, size_t from, size_t to)
     return plm_quantile(t->value, to - from, LOW);
 }
 
+/* A stem does not widen upwards: where circles do, even most of them, they hold feet. */
 static void find_low(tube *t)
 {
-    for (size_t n = 0; n < t->path.count; n++)
-        t->low[n] =
-            low_radius(t, n > ABOUT ? n - ABOUT : 0, n + ABOUT + 1 < t->path.count ? n + ABOUT + 1 : t->path.count);
+    double least = INFINITY;
+    for (size_t n = 0; n < t->path.count; n++) {
+        const size_t end = n + ABOUT + 1 < t->path.count ? n + ABOUT + 1 : t->path.count;
+        const double low = low_radius(t, n > ABOUT ? n - ABOUT : 0, end);
+        least = fmin(least, low);
+        t->low[n] = fmin(low, WIDENED * least);
+    }
 }
 
 static void direction(const plm_stem_path *path, size_t from, size_t to, double out[3])
@@ -264,13 +271,23 @@ static void measure_offsets(tube *t, float *offset)
     }
 }
 
-static void mark(plm_sketch *sketch, const float *offset, float *value, size_t leaves, size_t *total, size_t *taken)
+/* Up to which offset points are the stem's. What scatters about the tube is its own, all of it, as far as it is the tube's
+ * shape; noise spreads stem and feet alike, and beyond some of it there are more points of feet than of the stem. */
+static double surface_limit(const tube *t, const float *offset)
 {
-    const size_t count = sketch->working.count;
+    const size_t count = t->sketch->working.count, nodes = t->path.count;
     size_t near = 0;
     for (size_t i = 0; i < count; i++)
-        if (offset[i] < NEAR_SURFACE) value[near++] = fabsf(offset[i] - 1);
-    const double limit = MARGIN + SCATTERS * 1.4826 * plm_quantile(value, near, 0.5);
+        if (offset[i] < NEAR_SURFACE) t->value[near++] = fabsf(offset[i] - 1);
+    const double scatter = 1.4826 * plm_quantile(t->value, near, 0.5);
+    for (size_t n = 0; n < nodes; n++) t->value[n] = (float)t->path.radius[n];
+    const double noise = fmin(t->sketch->scale.noise / plm_quantile(t->value, nodes, 0.5), scatter);
+    return MARGIN + hypot(SCATTERS * sqrt(scatter * scatter - noise * noise), NOISE_SCATTERS * noise);
+}
+
+static void mark(plm_sketch *sketch, const float *offset, double limit, size_t leaves, size_t *total, size_t *taken)
+{
+    const size_t count = sketch->working.count;
     for (size_t i = 0; i < count; i++) {
         const int32_t leaf = sketch->leaf[i];
         sketch->is_stem[i] = offset[i] <= limit;
@@ -339,7 +356,7 @@ plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
     if (status == PLM_OK) {
         find_tube(sketch, &t, fork, most);
         measure_offsets(&t, offset);
-        mark(sketch, offset, t.value, leaves, total, taken);
+        mark(sketch, offset, surface_limit(&t, offset), leaves, total, taken);
         const plm_stem_path rough = sketch->stem;
         sketch->stem = t.path;
         t.path = rough;
