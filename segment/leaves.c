@@ -164,6 +164,11 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
     }
     if (status == PLM_OK) {
         sketch->habit = habit != PLM_HABIT_UNKNOWN ? habit : guess_habit(sketch, &groups);
+        /* Where the stem's line ended early, its rest is one foot of several petioles. */
+        if (sketch->habit == PLM_HABIT_SIMPLE && sketch->stem.count)
+            status = plm_side_groups_split(sketch, &groups, error);
+    }
+    if (status == PLM_OK) {
         if (sketch->habit == PLM_HABIT_STRAP && sketch->stem.count)
             status = leaves_without_petioles(sketch, error);
         else

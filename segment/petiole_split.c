@@ -1,12 +1,15 @@
-/* segment/petiole_split.c: petioles of a rosette that lean on each other near the core make one foot. A petiole bears one
- * blade, so each blade with a way of its own to the trunk is a leaf. */
+/* segment/petiole_split.c: petioles of a rosette that lean on each other near the core make one foot, and so do those above
+ * the end of a stem's line that ended early. A petiole of a simple leaf bears one blade, so each blade with a way of its own
+ * to the trunk is a leaf. */
 #include "segment/side_groups.h"
 
 #include "segment/scratch.h"
 
 #include <math.h>
 
-static const double OWN_WAY = 0.5; /* length of a way that no other blade shares, in R: less is one blade, torn */
+/* Length of a way that no other blade shares, in R: less is one blade, torn. On a stem petioles do not crowd: less than
+ * a tube's shortest length is none. */
+static const double OWN_WAY = 0.5, OWN_WAY_ON_STEM = 1.5;
 
 typedef struct work {
     plm_sketch *sketch;
@@ -63,7 +66,7 @@ static int32_t find_holder(const work *w, int32_t b)
 {
     const plm_sketch *s = w->sketch;
     const int32_t group = w->groups->blade_group[b];
-    const double least = OWN_WAY * s->scale.radius;
+    const double least = (s->stem.count ? OWN_WAY_ON_STEM : OWN_WAY) * s->scale.radius;
     for (uint32_t i = w->parent[w->entry[b]]; i != UINT32_MAX && s->group[i] == group; i = w->parent[i]) {
         const int32_t met = w->groups->blade[i];
         if (met >= 0 && met != b && w->holder[met] >= 0) return w->holder[met];

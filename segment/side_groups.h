@@ -28,8 +28,8 @@ typedef struct plm_side_groups {
  * petioles meet. */
 plm_status plm_side_groups_find(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
 
-/** For plants without a stem: splits groups of several petioles, so that each blade with a petiole of its own has a group.
- * Writes sketch->group. */
+/** For plants of simple leaves: splits groups of several petioles, so that each blade with a petiole of its own has a
+ * group. Writes sketch->group. */
 plm_status plm_side_groups_split(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
 
 /** For plants without a stem: finds the young leaves, whose blades are so small that they pass as tubes: ends of tubes

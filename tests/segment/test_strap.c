@@ -146,6 +146,14 @@ static void the_youngest_leaf_of_a_rosette_counts(void **unused)
           &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 306, .points = 45000, .noise = 5e-4}, 1, 0.94);
 }
 
+/* The stem's line ends early under the two topmost petioles of this plant, and its rest is one foot of both. */
+static void two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each(void **unused)
+{
+    (void)unused;
+    check("pepper", PLM_HABIT_SIMPLE, 305,
+          &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 305, .points = 45000, .noise = 5e-4}, 1, 0.9);
+}
+
 /* Leaves of two blades and three, some torn by what the scan missed, are compound; one blade a leaf is simple. */
 static void blades_on_one_foot_are_leaflets(void **unused)
 {
@@ -169,6 +177,7 @@ int main(void)
                                        cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
                                        cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each),
                                        cmocka_unit_test(the_youngest_leaf_of_a_rosette_counts),
+                                       cmocka_unit_test(two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each),
                                        cmocka_unit_test(blades_on_one_foot_are_leaflets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
