@@ -11,7 +11,8 @@
 enum {
     LEAF_SIZE = 12,
     MAXIMUM_DEPTH = 64,
-    FEW_HITS = 40 /* sorted faster by insertion */
+    FEW_HITS = 40, /* sorted faster by insertion */
+    RUN = 8        /* of a merge sort, begun by insertion */
 };
 
 typedef struct tree_node {
@@ -313,10 +314,44 @@ static void heap_sort(uint32_t *row, float *squared, size_t count)
     }
 }
 
+/* Merges sorted runs of `run` keys two by two. */
+static void merge_runs(const uint64_t *from, uint64_t *to, size_t count, size_t run)
+{
+    for (size_t begin = 0; begin < count; begin += 2 * run) {
+        const size_t middle = begin + run < count ? begin + run : count,
+                     end = begin + 2 * run < count ? begin + 2 * run : count;
+        size_t left = begin, right = middle;
+        for (size_t k = begin; k < end; k++) {
+            const bool takes_left = left < middle && (right == end || from[left] < from[right]);
+            to[k] = takes_left ? from[left++] : from[right++];
+        }
+    }
+}
+
+/* Some hundred hits by their keys, which compare as one number. */
+static void merge_sort(uint32_t *row, float *squared, size_t count)
+{
+    uint64_t here[PLM_MOST_NEIGHBOURS], there[PLM_MOST_NEIGHBOURS], *from = here, *to = there;
+    for (size_t i = 0; i < count; i++) {
+        const uint64_t key = key_of(squared[i], row[i]);
+        size_t j = i;
+        for (; j % RUN > 0 && here[j - 1] > key; j--) here[j] = here[j - 1];
+        here[j] = key;
+    }
+    for (size_t run = RUN; run < count; run *= 2) {
+        merge_runs(from, to, count, run);
+        uint64_t *const merged = to;
+        to = from, from = merged;
+    }
+    for (size_t i = 0; i < count; i++) row[i] = (uint32_t)from[i], squared[i] = squared_of(from[i]);
+}
+
 static void sort_hits(uint32_t *row, float *squared, size_t count)
 {
     if (count <= FEW_HITS)
         insertion_sort(row, squared, count);
+    else if (count <= PLM_MOST_NEIGHBOURS)
+        merge_sort(row, squared, count);
     else
         heap_sort(row, squared, count);
 }

@@ -13,14 +13,17 @@
 /** What writing may take longer than predicted. */
 static const double file_margin = 1.3;
 
-enum { FILES = 4, WARNINGS = 16, LONGEST_PATH = 4096 };
+/** The files of a plant. */
+typedef enum plant_file { FILE_CLOUD = 0, FILE_MESH, FILE_PICTURE, FILE_VIEW, FILE_COUNT } plant_file;
+
+enum { WARNINGS = 16, LONGEST_PATH = 4096 };
 
 /** Where a plant's run stands; what is in it is freed by free_state. */
 typedef struct plant_state {
     loaded_cloud loaded;
     plm_measurement measurement;
     bool is_read, is_measured;
-    char file[FILES][sizeof *((plm_run_plant *)0)->file];
+    char file[FILE_COUNT][sizeof *((plm_run_plant *)0)->file];
     char warning[WARNINGS][256];
     plm_run_plant record;
     bool is_timed; /* anytime and what follows are set */
@@ -164,39 +167,74 @@ static void note_file(plant_state *state, const char *path)
     snprintf(state->file[state->record.file_count++], sizeof *state->file, "%.300s", slash ? slash + 1 : path);
 }
 
+static const struct {
+    const char *name;
+    plm_cost cost;
+} plant_files[FILE_COUNT] = {
+    [FILE_CLOUD] = {"labelled.ply", PLM_COST_CLOUD_FILE},
+    [FILE_MESH] = {"leaves.ply", PLM_COST_MESH_FILE},
+    [FILE_PICTURE] = {"png", PLM_COST_PICTURE},
+    [FILE_VIEW] = {"view.json", PLM_COST_VIEW},
+};
+
+/* Whether a file is to be written. Changes the state only where time is limited. */
+static bool wants_file(plant_file file, bool with_view, plant_state *state)
+{
+    const plm_measurement *measurement = &state->measurement;
+    if (file == FILE_CLOUD && !measurement->segmentation.label) return false;
+    if (file == FILE_MESH && !measurement->leaves.triangle_count) return false;
+    if (file == FILE_VIEW && !with_view) return false;
+    if (file == FILE_CLOUD && state->is_timed && !state->done.has_all_points) {
+        leave_out(state, plant_files[file].name);
+        return false;
+    }
+    return has_time_for(state, plant_files[file].cost, plant_files[file].name);
+}
+
+static plm_status write_file(plant_file file, const char *path, const plm_plant_report *report,
+                             const plm_input_frame *frame, plm_error *error)
+{
+    switch (file) {
+        case FILE_CLOUD:
+            return plm_write_labelled_cloud(path, report->measurement, frame, error);
+        case FILE_MESH:
+            return plm_write_leaf_meshes(path, report->measurement, frame, error);
+        case FILE_PICTURE:
+            return plm_write_picture(path, report, error);
+        default:
+            return plm_write_view(path, report->plant_id, report->measurement, NULL, error);
+    }
+}
+
+/* Side by side where time is not limited: what there is time for is known only after the file before. */
 static plm_status write_files(const batch *open, size_t input, const plm_plant_report *report, bool with_view,
                               plant_state *state, plm_error *error)
 {
-    const plm_measurement *measurement = &state->measurement;
     plm_input_frame frame = {.xyz = (const float(*)[3])state->loaded.original,
                              .metres_per_unit = state->loaded.scale.metres_per_unit,
                              .georeference = report->georeference};
     memcpy(frame.origin, state->loaded.original_origin, sizeof frame.origin);
-    char path[LONGEST_PATH];
-    plm_status status = PLM_OK;
-    const bool all_points = !state->is_timed || state->done.has_all_points;
-    if (measurement->segmentation.label && !all_points) leave_out(state, "labelled.ply");
-    if (measurement->segmentation.label && all_points && has_time_for(state, PLM_COST_CLOUD_FILE, "labelled.ply")) {
-        status = batch_path(open, input, ".labelled.ply", path, sizeof path, error);
-        if (status == PLM_OK) status = plm_write_labelled_cloud(path, measurement, &frame, error);
-        if (status == PLM_OK) note_file(state, path);
+    struct {
+        char path[LONGEST_PATH];
+        plm_status status;
+        plm_error error;
+        bool is_written;
+    } file[FILE_COUNT] = {0};
+#pragma omp parallel for schedule(dynamic, 1) if (!state->is_timed)
+    for (int k = 0; k < FILE_COUNT; k++) {
+        if (!wants_file((plant_file)k, with_view, state)) continue;
+        char suffix[32];
+        snprintf(suffix, sizeof suffix, ".%s", plant_files[k].name);
+        file[k].status = batch_path(open, input, suffix, file[k].path, sizeof file[k].path, &file[k].error);
+        if (file[k].status == PLM_OK)
+            file[k].status = write_file((plant_file)k, file[k].path, report, &frame, &file[k].error);
+        file[k].is_written = file[k].status == PLM_OK;
     }
-    if (status == PLM_OK && measurement->leaves.triangle_count &&
-        has_time_for(state, PLM_COST_MESH_FILE, "leaves.ply")) {
-        status = batch_path(open, input, ".leaves.ply", path, sizeof path, error);
-        if (status == PLM_OK) status = plm_write_leaf_meshes(path, measurement, &frame, error);
-        if (status == PLM_OK) note_file(state, path);
+    for (int k = 0; k < FILE_COUNT; k++) {
+        if (file[k].status != PLM_OK) return plm_fail(error, file[k].status, "%s", file[k].error.message);
+        if (file[k].is_written) note_file(state, file[k].path);
     }
-    if (status == PLM_OK && has_time_for(state, PLM_COST_PICTURE, "png")) {
-        status = batch_path(open, input, ".png", path, sizeof path, error);
-        if (status == PLM_OK) status = plm_write_picture(path, report, error);
-        if (status == PLM_OK) note_file(state, path);
-    }
-    if (status != PLM_OK || !with_view || !has_time_for(state, PLM_COST_VIEW, "view.json")) return status;
-    status = batch_path(open, input, ".view.json", path, sizeof path, error);
-    if (status == PLM_OK) status = plm_write_view(path, report->plant_id, measurement, NULL, error);
-    if (status == PLM_OK) note_file(state, path);
-    return status;
+    return PLM_OK;
 }
 
 static void tell_warnings(const plant_state *state, const char *plant_id)
