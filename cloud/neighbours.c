@@ -271,17 +271,6 @@ static bool hit_before(hit a, hit b)
 }
 
 /* In place over two arrays, by distance, then row: no allocation, and the same order for any input order. */
-static void insertion_sort(uint32_t *row, float *squared, size_t count)
-{
-    for (size_t i = 1; i < count; i++) {
-        const hit here = {squared[i], row[i]};
-        size_t j = i;
-        for (; j > 0 && hit_before(here, (hit){squared[j - 1], row[j - 1]}); j--)
-            squared[j] = squared[j - 1], row[j] = row[j - 1];
-        squared[j] = here.squared, row[j] = here.row;
-    }
-}
-
 static void heap_sort(uint32_t *row, float *squared, size_t count)
 {
     for (size_t phase = count / 2 + count; phase-- > 0;) {
@@ -328,7 +317,7 @@ static void merge_runs(const uint64_t *from, uint64_t *to, size_t count, size_t 
     }
 }
 
-/* Some hundred hits by their keys, which compare as one number. */
+/* The same by keys, which compare as one number. */
 static void merge_sort(uint32_t *row, float *squared, size_t count)
 {
     uint64_t here[PLM_MOST_NEIGHBOURS], there[PLM_MOST_NEIGHBOURS], *from = here, *to = there;
@@ -348,9 +337,7 @@ static void merge_sort(uint32_t *row, float *squared, size_t count)
 
 static void sort_hits(uint32_t *row, float *squared, size_t count)
 {
-    if (count <= FEW_HITS)
-        insertion_sort(row, squared, count);
-    else if (count <= PLM_MOST_NEIGHBOURS)
+    if (count <= PLM_MOST_NEIGHBOURS)
         merge_sort(row, squared, count);
     else
         heap_sort(row, squared, count);

@@ -28,7 +28,7 @@ plm_status plm_spacing_quantile(const plm_index *index, const float (*xyz)[3], s
 plm_status plm_sampling_measure(const plm_index *index, const float (*xyz)[3], size_t count, const bool *fused_known,
                                 plm_sampling *sampling, plm_error *error);
 
-/** The noise of plm_sampling_measure alone: median of the residual SD of some 400 local quadrics. At least 1 point. */
+/** The noise of plm_sampling_measure alone: median of the residual SD of 25 to 250 local quadrics. At least 1 point. */
 plm_status plm_noise_measure(const plm_index *index, const float (*xyz)[3], size_t count, double *noise,
                              plm_error *error);
 

@@ -18,7 +18,7 @@ typedef struct plm_subset {
 } plm_subset;
 
 /** Takes a share of count points at random, independently of plm_sample_rows, with an index of their own; all of them where
- * the share is near 1 or they are few. xyz and index (over xyz) must outlive it; freed by plm_subset_free, which takes {0}
+ * the share is near 1. xyz and index (over xyz) must outlive it; freed by plm_subset_free, which takes {0}
  * too. Its errors are those of memory. */
 plm_status plm_subset_take(const plm_index *index, const float (*xyz)[3], size_t count, double share, plm_subset *taken,
                            plm_error *error);

@@ -6,6 +6,8 @@
 #include "simulate/simulate.h"
 #include "support/label_score.h"
 
+#define DEPTH_CAMERA .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = 5e-4, .views = 12
+
 static label_score segment(const char *kind, uint64_t seed, const plm_scan_options *options, plm_habit *habit)
 {
     plm_error error = {0};
@@ -89,10 +91,8 @@ static void the_stem_of_maize_is_its_tube(void **unused)
 static void noise_makes_no_petioles_of_straps(void **unused)
 {
     (void)unused;
-    const label_score score = check(
-        "maize", PLM_HABIT_STRAP, 102,
-        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 102, .points = 45000, .noise = 5e-4, .views = 12},
-        0.95, 0.65);
+    const label_score score =
+        check("maize", PLM_HABIT_STRAP, 102, &(plm_scan_options){DEPTH_CAMERA, .seed = 102}, 0.95, 0.65);
     assert_true(score.iou[PLM_LABEL_STEM] >= 0.55); /* feet on alternate sides draw no line of the stem aside */
 }
 
@@ -104,13 +104,7 @@ static void noise_hides_no_foot_in_the_stem(void **unused)
     static const double stem[] = {0.7, 0.74};
     for (uint64_t seed = 405; seed < 407; seed++) {
         const label_score score = check("maize", PLM_HABIT_STRAP, seed,
-                                        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD,
-                                                            .seed = seed,
-                                                            .points = 45000,
-                                                            .noise = 5e-4,
-                                                            .views = 12,
-                                                            .outliers = 0.005},
-                                        1, 0.8);
+                                        &(plm_scan_options){DEPTH_CAMERA, .seed = seed, .outliers = 0.005}, 1, 0.8);
         assert_true(score.iou[PLM_LABEL_STEM] >= stem[seed - 405]);
     }
 }
@@ -129,10 +123,8 @@ static void a_small_rosette_in_noise_keeps_its_leaves(void **unused)
 static void leaflets_broader_than_the_rachis_are_blade(void **unused)
 {
     (void)unused;
-    const label_score score = check(
-        "tomato", PLM_HABIT_COMPOUND, 304,
-        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 304, .points = 45000, .noise = 5e-4, .views = 12}, 1,
-        0.85);
+    const label_score score =
+        check("tomato", PLM_HABIT_COMPOUND, 304, &(plm_scan_options){DEPTH_CAMERA, .seed = 304}, 1, 0.85);
     assert_true(score.worst_leaf >= 0.8);
 }
 
@@ -159,11 +151,8 @@ static void short_petioles_make_no_single_leaf(void **unused)
 {
     (void)unused;
     plm_habit habit;
-    const label_score score = segment(
-        "arabidopsis", 303,
-        &(plm_scan_options){
-            .scanner = PLM_SCANNER_RGBD, .seed = 303, .points = 45000, .noise = 5e-4, .views = 12, .outliers = 0.005},
-        &habit);
+    const label_score score =
+        segment("arabidopsis", 303, &(plm_scan_options){DEPTH_CAMERA, .seed = 303, .outliers = 0.005}, &habit);
     assert_int_equal(habit, PLM_HABIT_ROSETTE);
     assert_in_range(score.leaves_found, 12, score.leaves);
     assert_true(score.iou[PLM_LABEL_LEAF] >= 0.95);
