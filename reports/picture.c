@@ -178,29 +178,56 @@ static bool is_free(words *taken, double x, double y, double width, double heigh
     return true;
 }
 
-/* The numbers of the organs, at their middles. */
-static void put_organ_names(plm_canvas *canvas, const plm_view *view, const plm_measurement *measurement, words *taken)
+/** The name of an organ and where it belongs. */
+typedef struct organ_name {
+    char text[32];
+    double x, y, nearness; /* to the viewer */
+} organ_name;
+
+/* Nearest to the viewer first; names break ties. */
+static int compare_names(const void *a, const void *b)
+{
+    const organ_name *p = a, *q = b;
+    if (p->nearness != q->nearness) return p->nearness > q->nearness ? -1 : 1;
+    return strcmp(p->text, q->text);
+}
+
+static int collect_names(const plm_view *view, const plm_measurement *measurement, organ_name name[MOST_WORDS])
 {
     static const char *const names[PLM_LEVEL_COUNT] = {"", "stem ", "", "leaf "};
     const plm_trait_value *before = NULL;
-    for (size_t i = 0; i < measurement->value_count; i++) {
+    int count = 0;
+    for (size_t i = 0; i < measurement->value_count && count < MOST_WORDS; i++) {
         const plm_trait_value *value = &measurement->value[i];
         const plm_level level = value->trait->level;
         if (value->organ_id < 0 || !names[level][0]) continue;
         if (before && before->trait->level == level && before->organ_id == value->organ_id) continue;
         before = value;
-        double point[3], x, y;
+        double point[3];
         for (int axis = 0; axis < 3; axis++) { /* from the input's axes to the plant's */
             point[axis] = -measurement->cloud.origin[axis];
             for (int k = 0; k < 3; k++) point[axis] += measurement->frame.rotation[axis][k] * value->centroid[k];
         }
-        plm_view_project(view, point, &x, &y);
-        char text[32];
-        snprintf(text, sizeof text, "%s%d", names[level], value->organ_id);
-        const double width = plm_text_width(text, 9);
-        if (!is_free(taken, x - width / 2 - 3, y - 9, width + 6, 18)) continue;
+        organ_name *here = &name[count++];
+        plm_view_project(view, point, &here->x, &here->y);
+        here->nearness = plm_view_nearness(view, point);
+        snprintf(here->text, sizeof here->text, "%s%d", names[level], value->organ_id);
+    }
+    qsort(name, (size_t)count, sizeof *name, compare_names);
+    return count;
+}
+
+/* The numbers of the organs, at their middles. Of two in one place the organ before the other, which hides it, has its
+ * name there. */
+static void put_organ_names(plm_canvas *canvas, const plm_view *view, const plm_measurement *measurement, words *taken)
+{
+    organ_name name[MOST_WORDS];
+    const int count = collect_names(view, measurement, name);
+    for (int i = 0; i < count; i++) {
+        const double width = plm_text_width(name[i].text, 9);
+        if (!is_free(taken, name[i].x - width / 2 - 3, name[i].y - 9, width + 6, 18)) continue;
         const plm_lettering lettering = {.size = 9, .weight = 0.15, .colour = ink, .has_halo = true};
-        plm_canvas_text(canvas, x - width / 2, y + 4, text, &lettering);
+        plm_canvas_text(canvas, name[i].x - width / 2, name[i].y + 4, name[i].text, &lettering);
     }
 }
 

@@ -39,6 +39,13 @@ void plm_view_project(const plm_view *view, const double point[3], double *x, do
     *y = view->y + view->height / 2.0 - view->scale * dot(offset, view->up);
 }
 
+double plm_view_nearness(const plm_view *view, const double point[3])
+{
+    double towards[3];
+    cross(view->right, view->up, towards);
+    return dot(point, towards);
+}
+
 plm_rgb plm_organ_colour(plm_label label, int32_t organ)
 {
     static const plm_rgb leaves[] = {{0, 158, 115}, {230, 159, 0},  {0, 114, 178},  {204, 121, 167}, {86, 180, 233},

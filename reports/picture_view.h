@@ -17,6 +17,9 @@ typedef struct plm_view {
 /** Where a point (offset from the cloud's origin) lies on the canvas. */
 void plm_view_project(const plm_view *view, const double point[3], double *x, double *y);
 
+/** How near a point is to the viewer, in metres from anywhere: more is nearer. */
+double plm_view_nearness(const plm_view *view, const double point[3]);
+
 /** Colours of organs: told apart by colour-blind people too (M. Okabe and K. Ito, Color Universal Design, 2008, and P. Tol,
  * Colour Schemes, 2021). */
 plm_rgb plm_organ_colour(plm_label label, int32_t organ);
