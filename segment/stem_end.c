@@ -11,6 +11,8 @@ static const double PETIOLES_LEAST = 2; /* median length of the others' tubes in
 static const double PETIOLES_FOR_KINK = 0.6; /* the same where the path turns */
 static const double INTERNODE_LEAST = 2;     /* the stem goes on beyond a turn with leaves on it, in R */
 enum { ROUNDS = 3 };
+static const double SHARP_TURN = 0.5; /* radians; stems turn less at a node, ... */
+static const double SHARP_REACH = 2;  /* ... and the turn is within so many R of the foot */
 static const double BARE_LEAST = 2;   /* a stretch without feet before the end, in R: the petiole */
 static const double STUB = 0.7;       /* a side tube without blade this long (in R) is a foot as well */
 static const double CUT_BEYOND = 0.3; /* the cut is so far (in R) beyond the last foot when nothing tells better, ... */
@@ -116,17 +118,35 @@ static plm_status find_top(plm_sketch *sketch, stem_top *top, plm_error *error)
     return PLM_OK;
 }
 
-/* Takes the path out of a petiole that it turned into beyond the last foot. A leaf beyond the turn beside the one that the
- * path ran into must stand on the straight continuation. */
+/* The node about the last foot where the path turns as sharply as only petioles leave a stem: then what seems to stand
+ * there may be the rest of the stem. 0: none. */
+static size_t sharp_turn(const plm_stem_path *stem, double foot, double R)
+{
+    size_t best = 0;
+    double most = SHARP_TURN;
+    for (size_t n = 3; n + 3 < stem->count; n++) {
+        if (fabs(stem->along[n] - foot) > SHARP_REACH * R) continue;
+        const double turn = plm_stem_turn(stem, n);
+        if (turn > most) most = turn, best = n;
+    }
+    return best;
+}
+
+/* Takes the path out of a petiole that it turned into at or beyond the last foot. A leaf beyond the turn beside the one
+ * that the path ran into must stand on the straight continuation. */
 static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *done, plm_error *error)
 {
     const double R = sketch->scale.radius, last = last_foot(&top->groups, top->end, STUB * R);
     *done = false;
     if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
-    const size_t kink = plm_stem_kink(&sketch->stem, last);
+    size_t kink = plm_stem_kink(&sketch->stem, last);
+    bool has_leaves = true;
+    if (kink)
+        has_leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, SESSILE * top->typical) > 1;
+    else
+        kink = sharp_turn(&sketch->stem, last, R);
     if (!kink) return PLM_OK;
-    const size_t leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, SESSILE * top->typical);
-    const plm_status status = plm_stem_straighten(sketch, kink, leaves > 1 ? INTERNODE_LEAST * R : 0, done, error);
+    const plm_status status = plm_stem_straighten(sketch, kink, has_leaves ? INTERNODE_LEAST * R : 0, done, error);
     if (*done) plm_sketch_mark_stem(sketch);
     return status;
 }

@@ -154,6 +154,15 @@ static void petiole_truth(const plm_leaf_spec *spec, const plm_curve *axis, cons
     truth->first_inclination = from_zenith(truth->base, truth->first_junction);
 }
 
+/* The last blade of a compound leaf begins where its petiolule ends, which goes on from the rachis. */
+static void end_at_last_blade(double petiolule, const plm_true_leaf *last, plm_true_petiole *truth)
+{
+    truth->length += petiolule;
+    memcpy(truth->junction, last->base, sizeof truth->junction);
+    truth->chord = plm_distance(truth->base, truth->junction);
+    truth->inclination = from_zenith(truth->base, truth->junction);
+}
+
 /* One leaflet: a petiolule off the rachis (part of the petiole) and its blade. */
 static void build_leaflet(plm_builder *builder, const plm_curve *rachis, const plm_taper *taper,
                           const plm_leaflet_spec *spec, int number, plm_true_leaf *truth)
@@ -183,7 +192,7 @@ static void build_leaflet(plm_builder *builder, const plm_curve *rachis, const p
 
 /* All leaflets of a leaf; the leaf's own tip and length follow from the last one. */
 static void build_leaflets(plm_builder *builder, const plm_leaf_spec *spec, const plm_curve *rachis,
-                           const plm_taper *taper, plm_true_leaf *leaf)
+                           const plm_taper *taper, plm_true_leaf *leaf, plm_true_petiole *petiole)
 {
     plm_virtual_plant *plant = builder->plant;
     leaf->is_compound = true;
@@ -204,6 +213,7 @@ static void build_leaflets(plm_builder *builder, const plm_leaf_spec *spec, cons
     leaf->width = leaf->width_chord = NAN; /* the width is taken in the leaf's plane, from its faces */
     leaf->azimuth = atan2(leaf->tip[1] - leaf->base[1], leaf->tip[0] - leaf->base[0]);
     leaf->visible_fraction = NAN;
+    end_at_last_blade(end->petiolule_length, last, petiole);
 }
 
 /* Faces and truth of one leaf as specified. */
@@ -220,6 +230,7 @@ static void build_once(plm_builder *builder, const plm_built_stem *stem, double 
     builder->organ = (int32_t)plant->leaf_count++;
     builder->leaflet = -1;
     *leaf = (plm_true_leaf){.insertion_angle = NAN};
+    plm_true_petiole *petiole = NULL;
     const plm_frame_at *end = &at.frame;
     const double *start = at.base, *direction = at.frame.tangent;
     double chord[3];
@@ -227,24 +238,26 @@ static void build_once(plm_builder *builder, const plm_built_stem *stem, double 
         if (!add_row(builder, &plant->petiole, sizeof *plant->petiole, plant->petiole_count, &builder->petiole_room))
             return;
         plm_curve_grow(at.base, &at.frame, spec->petiole_length, &spec->petiole_bend, &axis);
-        plm_true_petiole *petiole = &plant->petiole[plant->petiole_count++];
+        petiole = &plant->petiole[plant->petiole_count++];
         petiole_truth(spec, &axis, &taper, petiole);
         builder->label = PLM_LABEL_PETIOLE;
         build_petiole(builder, &axis, &taper, at.inside);
         end = &axis.frame[PLM_CURVE_STEPS];
         start = axis.point[PLM_CURVE_STEPS];
-        for (int i = 0; i < 3; i++) chord[i] = petiole->junction[i] - petiole->base[i];
-        plm_normalise(chord);
-        direction = chord;
     }
     if (spec->leaflet_count > 0) {
-        build_leaflets(builder, spec, &axis, &taper, leaf);
+        build_leaflets(builder, spec, &axis, &taper, leaf, petiole);
     } else {
         place_blade(&spec->blade, start, end, spec->pitch, spec->yaw, spec->roll, &blade);
         builder->label = PLM_LABEL_LEAF;
         plm_build_blade(builder, &blade);
         blade_truth(&blade, leaf);
         if (!has_petiole) direction = blade.midrib.frame[0].tangent;
+    }
+    if (has_petiole) {
+        for (int i = 0; i < 3; i++) chord[i] = petiole->junction[i] - petiole->base[i];
+        plm_normalise(chord);
+        direction = chord;
     }
     leaf->role = spec->role;
     const double cosine = plm_dot(direction, at.stem_axis);

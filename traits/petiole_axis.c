@@ -18,7 +18,8 @@ static const double end_share = 0.02; /* points that stand for an end at the sta
 static const double radii_per_span = 60;
 static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
 static const double noise_along = 0.7;       /* share of the noise that lies along the tube */
-static const double least_ring = 0.45;       /* share of a ring that must be outside of the stem */
+static const double turned_round = 0.4; /* of the length: the base lies so much nearer to the leaf than the far end */
+static const double least_ring = 0.45;  /* share of a ring that must be outside of the stem */
 /* Where the labels are our own: what they leave open of the junction along the petiole and of the foot across it, in radii
  * and in SDs of the noise, and of the direction (medians over simulated plants). */
 static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.6;
@@ -112,6 +113,19 @@ static void ends_without_stem(petiole *p, double base[3], double far[3])
     memcpy(far, one_is_base ? other : one, 3 * sizeof *far);
 }
 
+/* Distance of a place from the nearest point of the petiole's leaf. */
+static double gap_to_leaf(const petiole *p, const double place[3])
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < p->leaf->count; i++) {
+        const float *xyz = p->leaf->xyz[i];
+        least = fmin(least, gap_between((double[3]){xyz[0], xyz[1], xyz[2]}, place));
+    }
+    return least;
+}
+
+/* Ends: the base is the one nearest to the stem, except where the leaf begins there: then what was called stem is not what
+ * carries the petiole, and is left out of it. */
 static void first_ends(petiole *p, double base[3], double far[3])
 {
     if (!p->stem) {
@@ -123,6 +137,11 @@ static void first_ends(petiole *p, double base[3], double far[3])
     mean_of_nearest(p, p->distance, base);
     for (size_t i = 0; i < p->points.count; i++) p->distance[i] = -gap_between(p->points.xyz[i], base);
     mean_of_nearest(p, p->distance, far);
+    if (!p->leaf) return;
+    const double turned = gap_to_leaf(p, far) - gap_to_leaf(p, base);
+    if (turned < turned_round * gap_between(base, far)) return;
+    p->stem = NULL;
+    ends_without_stem(p, base, far);
 }
 
 /* ---- The line --------------------------------------------------------------------------------------------------- */

@@ -110,6 +110,60 @@ static void the_stem_ends_where_its_way_turns_into_the_last_petiole(void **unuse
     plm_cloud_free(&plant.cloud);
 }
 
+/* Two leaves low on the stem, then one on a long level petiole from which the upper stem, thinner than that petiole, goes
+ * on straight to two more: the way through thick tubes takes the petiole, and nothing but the upper stem stands where it
+ * turns. */
+static void the_stem_goes_straight_on_where_a_stout_petiole_leaves_it(void **unused)
+{
+    (void)unused;
+    static known_plant plant;
+    static const double height[5] = {0.03, 0.03, 0.06, 0.085, 0.1}, length[5] = {0.006, 0.006, 0.06, 0.03, 0.012};
+    static const double rise[5] = {0.6, 0.6, 0.15, 0.8, 1.2}, radius[5] = {0.0008, 0.0008, 0.0011, 0.0008, 0.0006};
+    static const double turn[5] = {0.3, 3.4, 1.9, 4.6, 0.8};
+    plm_error error = {0};
+    uint64_t state = 5;
+    plm_segmentation found;
+    assert_ok(plm_cloud_create(POINTS, 0, &plant.cloud, &error));
+    for (size_t i = 0; i < POINTS; i++) {
+        const double pick = test_uniform(&state);
+        const int k = (int)(test_uniform(&state) * 5);
+        const double out[2] = {cos(turn[k]), sin(turn[k])}, along = length[k] / sqrt(1 + rise[k] * rise[k]);
+        const double foot[3] = {0, 0, height[k]}, base[3] = {0}, node[3] = {0, 0, 0.06}, top[3] = {0, 0, 0.1};
+        const double head[3] = {along * out[0], along * out[1], height[k] + along * rise[k]};
+        float *p = plant.cloud.xyz[i];
+        if (pick < 0.12) {
+            on_tube(base, node, 0.0012, &state, p);
+            plant.label[i] = PLM_LABEL_STEM;
+        } else if (pick < 0.18) {
+            on_tube(node, top, 0.0008, &state, p);
+            plant.label[i] = PLM_LABEL_STEM;
+        } else if (pick < 0.3 && (k == 2 || pick < 0.22)) {
+            on_tube(foot, head, radius[k], &state, p);
+            plant.label[i] = PLM_LABEL_PETIOLE;
+        } else {
+            const double r = 0.014 * sqrt(test_uniform(&state)), angle = 2 * PLM_PI * test_uniform(&state);
+            const double forth = 0.014 + r * cos(angle), across = r * sin(angle);
+            p[0] = (float)(head[0] + forth * out[0] - across * out[1]);
+            p[1] = (float)(head[1] + forth * out[1] + across * out[0]);
+            p[2] = (float)(head[2] + 0.2 * forth);
+            plant.label[i] = PLM_LABEL_LEAF;
+        }
+        for (int axis = 0; axis < 3; axis++) p[axis] += (float)(0.0002 * test_normal(&state));
+    }
+    assert_ok(plm_segment(&plant.cloud, NULL, NULL, NULL, &found, &error));
+    assert_int_equal(found.leaf_count, 5);
+    size_t right = 0, all = 0, petiole = 0;
+    for (size_t i = 0; i < POINTS; i++) {
+        const float *p = plant.cloud.xyz[i];
+        if (plant.label[i] == PLM_LABEL_STEM && p[2] > 0.065 && p[2] < 0.095) all++, right += found.label[i] == 1;
+        petiole += plant.label[i] == PLM_LABEL_PETIOLE && hypot(p[0], p[1]) > 0.01 && found.label[i] == PLM_LABEL_STEM;
+    }
+    assert_true((double)right > 0.9 * (double)all);
+    assert_int_equal(petiole, 0);
+    plm_segmentation_free(&found);
+    plm_cloud_free(&plant.cloud);
+}
+
 static void check_plant(double noise, double unit)
 {
     static known_plant plant;
@@ -241,6 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(organs_of_a_simple_plant_are_found_and_numbered),
         cmocka_unit_test(the_stem_ends_where_its_way_turns_into_the_last_petiole),
+        cmocka_unit_test(the_stem_goes_straight_on_where_a_stout_petiole_leaves_it),
         cmocka_unit_test(organs_are_found_in_noise),
         cmocka_unit_test(the_unit_does_not_matter),
         cmocka_unit_test(the_order_of_rows_does_not_matter),

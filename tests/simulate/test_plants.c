@@ -114,6 +114,27 @@ static void petioles_leave_the_stem_at_its_surface(void **state)
     plm_virtual_plant_free(&plant);
 }
 
+/* The rachis goes on in the petiolule of the last leaflet: the chord and length end where that one's blade begins. */
+static void petioles_of_compound_leaves_end_at_the_last_blade(void **state)
+{
+    (void)state;
+    static const char *const kind[] = {"tomato", "soybean"};
+    for (size_t j = 0; j < COUNT(kind); j++) {
+        plm_virtual_plant plant = grow(kind[j], 3, 0.3);
+        size_t compound = 0;
+        for (size_t k = 0; k < plant.petiole_count; k++) {
+            const plm_true_leaf *leaf = &plant.leaf[k];
+            if (!plant.petiole[k].is_compound) continue;
+            compound++;
+            const plm_true_leaf *last = &plant.leaflet[leaf->first_leaflet + leaf->leaflet_count - 1];
+            for (int i = 0; i < 3; i++) assert_near(plant.petiole[k].junction[i], last->base[i], 1e-12);
+            assert_true(plant.petiole[k].length >= plant.petiole[k].chord - 1e-9);
+        }
+        assert_true(compound >= 3);
+        plm_virtual_plant_free(&plant);
+    }
+}
+
 static void an_unknown_kind_names_the_nearest(void **state)
 {
     (void)state;
@@ -132,6 +153,7 @@ int main(void)
         cmocka_unit_test(seedlings_have_the_sizes_of_the_seedling_paper),
         cmocka_unit_test(large_plants_have_the_organs_of_the_laser_scanning_paper),
         cmocka_unit_test(petioles_leave_the_stem_at_its_surface),
+        cmocka_unit_test(petioles_of_compound_leaves_end_at_the_last_blade),
         cmocka_unit_test(an_unknown_kind_names_the_nearest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -125,6 +125,38 @@ static void noise_is_covered_by_the_standard_errors(void **unused)
     plm_measurement_free(&plant);
 }
 
+/* A blade at the end that is nearer to the stem: that end is the junction, and the stem beside it is not the petiole's. */
+static void a_petiole_ends_where_its_blade_begins(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_cloud cloud;
+    uint64_t state = 8;
+    enum { BLADE = 2000 };
+    static double xyz[POINTS + BLADE][3];
+    assert_ok(plm_cloud_create(STEM + PETIOLE + BLADE, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    const test_tube stem = {.end = {0, 0, stem_length}, .radius = {stem_radius, stem_radius}, .arc = {0, 2 * PLM_PI}};
+    const test_tube petiole = {.base = {0.03, 0, 0.05},
+                               .end = {0.004, 0, 0.06},
+                               .radius = {petiole_radius, petiole_radius},
+                               .arc = {0, 2 * PLM_PI}};
+    test_tube_points(&stem, STEM, &state, xyz);
+    test_tube_points(&petiole, PETIOLE, &state, xyz + STEM);
+    for (size_t i = STEM + PETIOLE; i < STEM + PETIOLE + BLADE; i++) {
+        xyz[i][0] = 0.004;
+        xyz[i][1] = 0.02 * (test_uniform(&state) - 0.5);
+        xyz[i][2] = 0.0608 + 0.02 * test_uniform(&state);
+    }
+    for (size_t i = 0; i < cloud.count; i++) {
+        for (int k = 0; k < 3; k++) cloud.xyz[i][k] = (float)xyz[i][k];
+        cloud.label[i] = i < STEM ? PLM_LABEL_STEM : i < STEM + PETIOLE ? PLM_LABEL_PETIOLE : PLM_LABEL_LEAF;
+        cloud.organ[i] = 0;
+    }
+    plm_measurement plant = measure(&cloud);
+    assert_near(plm_degrees(find(&plant, "petiole_inclination", 0)->value), plm_degrees(atan2(0.026, 0.01)), 0.5);
+    plm_measurement_free(&plant);
+}
+
 static void the_order_of_rows_does_not_matter(void **unused)
 {
     (void)unused;
@@ -227,6 +259,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
         cmocka_unit_test(fits_tell_steps_condition_and_end),
+        cmocka_unit_test(a_petiole_ends_where_its_blade_begins),
         cmocka_unit_test(noise_is_covered_by_the_standard_errors),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
         cmocka_unit_test(labelled_clouds_give_the_true_diameters_and_angles),
