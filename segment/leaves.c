@@ -13,6 +13,8 @@ static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in r
 static const double STRAP_EVIDENCE =
     0.5; /* both weigh half, by the area of the leaves; more than this: strap leaves, ... */
 static const double STRAP_RISING = 0.36; /* ... or than this where larger balls find more tubes: the folds of straps */
+static const double FEET =
+    2; /* tubes without a leaf are so near, in R, to the petioles of a rosette that they are feet of */
 /* Blades a leaf from which on leaves are compound: simple ones have one (1.17 at most over 90 virtual plants, where a scan
  * tore one), compound ones more even where noise tears them into leaves of their own (1.29 at least). Three on one foot are
  * no tear; without them more is asked for. */
@@ -122,6 +124,36 @@ static plm_status number_leaflets(plm_sketch *sketch, const plm_side_groups *gro
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
+/* A rosette has no stem: tubes at its core that bear no leaf are the feet of the petioles that they touch. What reaches
+ * farther hangs below or is a piece of something else, and is no organ. */
+static plm_status give_feet(plm_sketch *sketch, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    uint32_t *source = plm_scratch_take(&scratch, count, sizeof *source);
+    float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
+    int32_t *origin = plm_scratch_take(&scratch, count, sizeof *origin);
+    size_t sources = 0;
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    for (uint32_t i = 0; i < count && status == PLM_OK; i++)
+        if (sketch->leaf[i] >= 0) source[sources++] = i;
+    const plm_walk walk = {.source = source,
+                           .source_count = sources,
+                           .limit = FEET * sketch->scale.radius,
+                           .distance = distance,
+                           .origin = origin};
+    if (status == PLM_OK) status = plm_graph_walk(&sketch->graph, &walk, error);
+    for (size_t i = 0; i < count && status == PLM_OK; i++) {
+        if (sketch->leaf[i] >= 0 || !sketch->is_tube[i]) continue;
+        if (origin[i] >= 0)
+            sketch->leaf[i] = sketch->leaf[source[origin[i]]];
+        else
+            sketch->is_tube[i] = false;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
+
 /* One leaf a group that has a blade. */
 static plm_status leaves_of_groups(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)
 {
@@ -138,6 +170,7 @@ static plm_status leaves_of_groups(plm_sketch *sketch, const plm_side_groups *gr
         for (size_t i = 0; i < sketch->working.count; i++)
             sketch->leaf[i] = sketch->group[i] >= 0 && !sketch->is_stem[i] ? leaf_of[sketch->group[i]] : -1;
         status = number_leaves(sketch, along, leaves, error);
+        if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE) status = give_feet(sketch, error);
     }
     plm_scratch_free(&scratch, NULL);
     return status;

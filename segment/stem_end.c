@@ -20,6 +20,9 @@ static const double CUT_END = 1.25;   /* ... and so far before the path's end, w
 static const double BEND = 0.35;      /* kinks (radians) and ... */
 static const double DROP = 0.25;      /* ... losses of radius that count as one unit of evidence */
 static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
+static const double RISE_LEAST =
+    0.15; /* of the size: 0.22 and more on stems, virtual and real, while ways along petioles of
+                                             rosettes in noise, cut where they thin, end at 0.1 or less */
 
 static double tube_of_blade(const plm_side_group *group)
 {
@@ -174,6 +177,15 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
     plm_sketch_mark_stem(sketch);
 }
 
+/* The way that was traced rises enough, but what is left of it may not: then it ran up petioles of a rosette. */
+static void forget_low_stem(plm_sketch *sketch)
+{
+    const plm_stem_path *stem = &sketch->stem;
+    if (stem->node[stem->count - 1][2] - stem->node[0][2] >= RISE_LEAST * sketch->scale.size) return;
+    plm_stem_path_free(&sketch->stem);
+    for (size_t i = 0; i < sketch->working.count; i++) sketch->is_stem[i] = false;
+}
+
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
@@ -187,5 +199,6 @@ plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
         if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
         plm_side_groups_free(&top.groups);
     }
+    if (status == PLM_OK) forget_low_stem(sketch);
     return status;
 }

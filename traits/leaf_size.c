@@ -2,6 +2,7 @@
 #include "traits/families.h"
 #include "traits/leaf_midrib.h"
 #include "traits/leaf_surfaces.h"
+#include "traits/plant_foot.h"
 
 #include "cloud/linear.h"
 
@@ -57,42 +58,16 @@ plm_status plm_trait_leaf_azimuth(const plm_scene *scene, const plm_organ *leaf,
     return point_azimuth(midrib->tip[0] - midrib->base[0], midrib->tip[1] - midrib->base[1], e, out);
 }
 
-/* Mean of the main stem's lowest points: those within a share of its height, and at least so many. */
-static bool find_stem_base(const plm_scene *scene, double base[2], double *error_of_base)
-{
-    static const double lowest_share = 0.02, fewest_metres = 0.002;
-    const plm_organ *stem = plm_scene_organ(scene, PLM_LABEL_STEM, 0);
-    if (!stem || stem->count == 0) return false;
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < stem->count; i++) {
-        low = fmin(low, stem->xyz[i][2]);
-        high = fmax(high, stem->xyz[i][2]);
-    }
-    const double limit = low + fmax(lowest_share * (high - low), fewest_metres);
-    double sum[2] = {0, 0}, squares = 0, count = 0;
-    for (size_t i = 0; i < stem->count; i++) {
-        if (stem->xyz[i][2] > limit) continue;
-        for (int k = 0; k < 2; k++) sum[k] += stem->xyz[i][k];
-        count++;
-    }
-    for (int k = 0; k < 2; k++) base[k] = sum[k] / count;
-    for (size_t i = 0; i < stem->count; i++) {
-        if (stem->xyz[i][2] > limit) continue;
-        for (int k = 0; k < 2; k++) squares += (stem->xyz[i][k] - base[k]) * (stem->xyz[i][k] - base[k]);
-    }
-    *error_of_base = 0.3 * sqrt(squares / count); /* seen from some sides more than from others */
-    return true;
-}
-
 plm_status plm_trait_leaf_azimuth_from_stem(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
                                             plm_error *error)
 {
     (void)error;
     double base[2], of_base;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
-    if (!find_stem_base(scene, base, &of_base)) return plm_not_applicable(out, "the plant has no stem");
+    if (!plm_plant_foot(scene, base, &of_base))
+        return plm_not_applicable(out, "neither a stem nor petioles tell where the plant stands");
     const double *centroid = leaf->surface.plane.centroid;
     const double of_leaf = 0.5 * leaf->surface.spacing + 0.2 * leaf->surface.noise;
-    out->method = "stem base to area centroid";
+    out->method = "plant base to area centroid";
     return point_azimuth(centroid[0] - base[0], centroid[1] - base[1], hypot(of_base, of_leaf), out);
 }

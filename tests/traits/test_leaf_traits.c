@@ -122,6 +122,49 @@ static void a_blade_alone_has_area_but_no_length(void **unused)
     free(row);
 }
 
+enum { ROSETTE_LEAVES = 5, STALK_POINTS = 200, DISC_POINTS = 1500 };
+
+/* Petioles that arch up and out from a place, each with a disc at its end; the last one is bent aside, seen from above. */
+static plm_cloud make_rosette(const double foot[2])
+{
+    plm_error error = {0};
+    plm_cloud cloud;
+    const size_t each = STALK_POINTS + DISC_POINTS;
+    assert_ok(plm_cloud_create(ROSETTE_LEAVES * each, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    uint64_t seed = 5;
+    for (size_t i = 0; i < ROSETTE_LEAVES * each; i++) {
+        const size_t leaf = i / each;
+        const bool on_stalk = i % each < STALK_POINTS;
+        const double angle = 2.4 * (double)leaf + 0.3, u = test_uniform(&seed), turn = 2 * PLM_PI * test_uniform(&seed);
+        const double r = on_stalk ? 0.001 + 0.009 * u : 0.017 + 0.007 * sqrt(u) * cos(turn);
+        const double across = on_stalk ? 0.0004 * cos(turn) : 0.007 * sqrt(u) * sin(turn);
+        const double aside = on_stalk && leaf == ROSETTE_LEAVES - 1 ? 0.002 + 0.3 * r : 0;
+        cloud.xyz[i][0] = (float)(foot[0] + r * cos(angle) - (across + aside) * sin(angle));
+        cloud.xyz[i][1] = (float)(foot[1] + r * sin(angle) + (across + aside) * cos(angle));
+        cloud.xyz[i][2] = (float)(0.3 * r + (on_stalk ? 20 * r * r + 0.0004 * sin(turn) : 0.002));
+        cloud.label[i] = on_stalk ? PLM_LABEL_PETIOLE : PLM_LABEL_LEAF;
+        cloud.organ[i] = (int32_t)leaf;
+    }
+    return cloud;
+}
+
+/* A rosette has no stem: it stands where its petioles meet. */
+static void leaves_of_a_rosette_point_away_from_where_petioles_meet(void **unused)
+{
+    (void)unused;
+    const double foot[2] = {0.03, -0.02};
+    plm_cloud cloud = make_rosette(foot);
+    plm_measurement plant = measure(&cloud);
+    for (int32_t leaf = 0; leaf < ROSETTE_LEAVES; leaf++) {
+        const plm_estimate azimuth = find(&plant, "leaf_azimuth_from_stem", leaf);
+        assert_int_equal(azimuth.state, PLM_STATE_OK);
+        const double off = remainder(azimuth.value - plm_degrees(2.4 * leaf + 0.3), 360);
+        assert_near(off, 0, 1.5);
+        assert_true(fabs(off) < 3 * azimuth.std_error);
+    }
+    plm_measurement_free(&plant);
+}
+
 /* Mean error in per cent of the leaves' areas and root mean square error in degrees of their inclinations. */
 static void compare_with_truth(const char *folder, const char *name, double *area, double *inclination)
 {
@@ -177,6 +220,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(traits_of_a_plane_ellipse_are_those_that_were_built),
         cmocka_unit_test(a_blade_alone_has_area_but_no_length),
+        cmocka_unit_test(leaves_of_a_rosette_point_away_from_where_petioles_meet),
         cmocka_unit_test(virtual_plants_are_within_the_goals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

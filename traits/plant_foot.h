@@ -1,0 +1,12 @@
+/* traits/plant_foot.h: where a plant stands, seen from above. Internal. */
+#ifndef PLANTIMETER_TRAITS_PLANT_FOOT_H
+#define PLANTIMETER_TRAITS_PLANT_FOOT_H
+
+#include "traits/scene.h"
+
+/** The place (x, y; metres, offsets from the cloud's origin) where the plant stands, and the standard error of each
+ * coordinate: the lower end of the main stem, or of rosettes the place where the lines of the petioles meet. False where
+ * there is no stem, and fewer than three petioles. */
+bool plm_plant_foot(const plm_scene *scene, double foot[2], double *std_error);
+
+#endif
