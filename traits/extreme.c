@@ -32,6 +32,9 @@ static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach =
 static const double alone_reach = 6.0;
 /* SD of noise by which a point is thrown off its surface at most. */
 static const double thrown_down = 3;
+/* Neighbours that lie off the quadric by so much more than the noise, as much again by their shape, are no one surface: thin
+ * tubes that meet, as the petioles at a rosette's foot. A point there is as high as it was seen, with all of its noise. */
+static const double no_surface = 1.4;
 /* A projection whose last step is shorter than this much of the noise is done. */
 static const double settled = 0.4;
 /* The centres of fitted discs stay inside a rim: by which part of their radius and give or take which; 0.1 and 0.7 in two
@@ -65,12 +68,14 @@ static void tangent_frame(const double (*offset)[3], const double *weight, size_
     plm_eigen3(moment, value, axis);
 }
 
-/* Height of the weighted quadric at u = v = 0, and its leverage: the variance of that height per variance of the points. False
- * where the neighbours do not determine it. */
-static bool quadric_height(const patch *p, double scale, double *height, double *leverage)
+/* The weighted quadric at u = v = 0: its height, its leverage (the variance of that height per variance of the points), and
+ * the points' root mean square distance from it. False where the neighbours do not determine it. */
+static bool quadric_height(const patch *p, double scale, double *height, double *leverage, double *rest)
 {
-    double normal[36] = {0}, right[6] = {0}, spread[36] = {0}, factor[36], unit[6] = {1};
+    double normal[36] = {0}, right[6] = {0}, spread[36] = {0}, factor[36], unit[6] = {1}, weights = 0, squares = 0;
     for (size_t i = 0; i < p->count; i++) {
+        weights += p->weight[i];
+        squares += p->weight[i] * p->local[i][2] * p->local[i][2];
         const double u = p->local[i][0] / scale, v = p->local[i][1] / scale, w = p->weight[i];
         const double row[6] = {1, u, v, u * u, u * v, v * v};
         for (int a = 0; a < 6; a++) {
@@ -82,10 +87,14 @@ static bool quadric_height(const patch *p, double scale, double *height, double 
         }
     }
     for (int a = 1; a < 6; a++) normal[a * 7] *= 1 + 1e-6; /* a ridge for slivers */
+    double solved[6];
     memcpy(factor, normal, sizeof factor);
-    if (!plm_solve_spd(6, normal, right) || !plm_solve_spd(6, factor, unit)) return false;
-    *height = right[0];
+    memcpy(solved, right, sizeof solved);
+    if (!plm_solve_spd(6, normal, solved) || !plm_solve_spd(6, factor, unit)) return false;
+    *height = solved[0];
     *leverage = 0;
+    for (int a = 0; a < 6; a++) squares -= solved[a] * right[a];
+    *rest = sqrt(fmax(squares, 0) / weights);
     for (int a = 0; a < 6; a++)
         for (int b = 0; b < 6; b++) *leverage += unit[a] * spread[a * 6 + b] * unit[b];
     return true;
@@ -120,7 +129,8 @@ static bool step_to_surface(const plm_subset *points, const float without[3], do
     for (size_t i = 0; i < p.count; i++)
         for (int k = 0; k < 3; k++) local[i][k] = plm_dot(offset[i], axis[k]);
     double height;
-    if (!quadric_height(&p, 5 * noise, &height, &onto->leverage) || !(fabs(height) < 4 * noise)) return false;
+    if (!quadric_height(&p, 5 * noise, &height, &onto->leverage, &onto->rest) || !(fabs(height) < 4 * noise))
+        return false;
     onto->leverage = fmin(onto->leverage, 1);
     for (int k = 0; k < 3; k++) {
         moved[k] = place[k] + height * axis[2][k];
@@ -251,6 +261,10 @@ static void take_noisy(const plm_index *index, const float (*band)[3], const plm
         plm_projection onto;
         if (!plm_is_supported(index, band, rank[i].place, sampling)) continue;
         if (!plm_project_to_surface(points, rank[i].place, noise, &onto)) continue;
+        if (onto.rest > no_surface * noise) {
+            memcpy(onto.place, rank[i].place, sizeof onto.place);
+            onto.leverage = 1;
+        }
         const double across = plm_dot(onto.normal, direction), squared = across * across;
         const plm_height height = {onto.place[0] * direction[0] + onto.place[1] * direction[1] +
                                        onto.place[2] * direction[2],

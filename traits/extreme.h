@@ -36,6 +36,7 @@ typedef struct plm_projection {
     float place[3];
     double normal[3]; /**< of the surface, unit, either side */
     double leverage;  /**< variance that is left across the surface per variance of the points, at most 1 */
+    double rest;      /**< root mean square distance of the neighbours from the surface, as weighted in the fit */
 } plm_projection;
 
 /** The points that surfaces are fitted to: all of count points, or where they lie far closer than the noise, as many of them
