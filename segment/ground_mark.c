@@ -51,7 +51,7 @@ static plm_status mark(plm_marker *m, plm_ground_marks *marks, plm_error *error)
     note_marks(m, marks);
     status = plm_ground_leftovers(m, colour ? share : NULL, error);
     if (status == PLM_OK && m->has_soil) {
-        status = plm_ground_foot(m, marks->foot, error);
+        status = plm_ground_foot(m, colour ? share : NULL, marks->foot, error);
         marks->foot[2] = -plm_relief_over(&m->soil, (const double[3]){marks->foot[0], marks->foot[1], 0});
     }
     return status;

@@ -58,8 +58,9 @@ static inline int plm_shade(const uint8_t rgb[3])
 /** Makes ground of the pieces along soil, wall and table that do not join the plant. plant_share may be NULL. */
 plm_status plm_ground_leftovers(plm_marker *marker, const float *plant_share, plm_error *error);
 
-/** Gives the plant the foot of its stem back, and says where it stands (u, v; untouched where nothing stands). */
-plm_status plm_ground_foot(plm_marker *marker, double foot[2], plm_error *error);
+/** Gives the plant the foot of its stem back, and says where it stands (u, v; untouched where nothing stands). plant_share
+ * may be NULL. */
+plm_status plm_ground_foot(plm_marker *marker, const float *plant_share, double foot[2], plm_error *error);
 
 /** Is the place within a level's outline, widened by margin? */
 static inline bool plm_within_level(const plm_level *level, double margin, const double p[3])

@@ -8,6 +8,11 @@
 
 enum { FOOT_LAYERS = 4, GROUND = -1, OPEN = -2, JOIN = 2 };
 
+static const float SOIL_SHARE = 0.2f; /* of the plant among the points of a colour: less is the soil's */
+static const double ROOTED =
+    0.1; /* points of other colours per point of the soil's about a foot: 0.2 and more under stems,
+                                     0.03 and less under rosettes */
+
 /* ---- Pieces --------------------------------------------------------------------------------------------------- */
 
 typedef struct pieces {
@@ -131,25 +136,39 @@ static int64_t foot_cell(const plm_stand *t, const float p[3])
     return (int64_t)a * (2 * t->size[1]) + (int64_t)b;
 }
 
-/* Where free points fill all layers over the soil, something stands. */
-plm_status plm_ground_foot(plm_marker *m, double foot[2], plm_error *error)
+/* Which cells of the floor have free points in all layers over the soil. */
+static void fill_layers(const plm_marker *m, double layer, uint8_t *layers)
+{
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        const double over = m->over[i] - m->soil_slack;
+        if (m->zone[i] != PLM_ZONE_FREE || !(over > 0 && over < FOOT_LAYERS * layer)) continue;
+        const int64_t c = foot_cell(&m->scene->stand, m->place[i]);
+        if (c >= 0) layers[c] |= (uint8_t)(1 << (int)(over / layer));
+    }
+}
+
+/* Where free points fill all layers over the soil, something stands. If nearly all below them has the soil's colour, it
+ * stands over the soil, not in it: the petioles of a rosette, which need no foot. */
+plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[2], plm_error *error)
 {
     const plm_stand *t = &m->scene->stand;
     uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
     if (!layers) return PLM_E_MEMORY;
     const double layer = 0.75 * m->cell;
-    double sum[2] = {0}, n = 0;
+    double sum[2] = {0}, n = 0, soil = 0, other = 0;
+    fill_layers(m, layer, layers);
     for (int turn = 0; turn < 2; turn++)
         for (size_t i = 0; i < m->cloud->count; i++) {
             const double over = m->over[i];
             if (!(over >= -m->soil.sigma && over < m->soil_slack + FOOT_LAYERS * layer)) continue;
             const int64_t c = foot_cell(t, m->place[i]);
-            if (c < 0) continue;
-            if (turn == 0 && m->zone[i] == PLM_ZONE_FREE && over > m->soil_slack) {
-                layers[c] |= (uint8_t)(1 << (int)((over - m->soil_slack) / layer));
-            } else if (turn == 1 && layers[c] == (1 << FOOT_LAYERS) - 1) {
-                if (m->zone[i] == PLM_ZONE_NEAR) m->zone[i] = PLM_ZONE_FREE;
+            if (c < 0 || layers[c] != (1 << FOOT_LAYERS) - 1) continue;
+            if (turn == 0) {
                 sum[0] += m->place[i][0], sum[1] += m->place[i][1], n++;
+                if (over > m->soil_slack || !plant_share) continue;
+                plant_share[plm_shade(m->cloud->rgb[i])] < SOIL_SHARE ? soil++ : other++;
+            } else if (m->zone[i] == PLM_ZONE_NEAR && !(other < ROOTED * soil)) {
+                m->zone[i] = PLM_ZONE_FREE;
             }
         }
     plm_free(layers);
