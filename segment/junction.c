@@ -14,6 +14,9 @@
 static const double WINDOW = 3;                         /* in steps of a working cell */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
 static const double WIDE = 1.6;        /* widths of the tube: a station beyond is blade, one below is tube */
+static const double TUBE_SHARE = 0.5;  /* of a station's points: it is of tube */
+static const double FULL = 0.5;        /* of the points that the tube's stations have */
+static const double LONG_RUN = 2.5;    /* windows: a narrow stretch of this length is tube, however few its points */
 static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
 static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
 static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
@@ -143,7 +146,7 @@ static double tube_width(const work *w, size_t first)
     size_t count = 0;
     for (size_t k = first; k < w->way.station_count; k++) {
         const plm_station *station = &w->way.station[k];
-        if (station->count > 1 && station->tube > 0.5) w->value[count++] = (float)station->width;
+        if (station->count > 1 && station->tube > TUBE_SHARE) w->value[count++] = (float)station->width;
     }
     return count ? plm_quantile(w->value, count, 0.4) : 0;
 }
@@ -167,15 +170,36 @@ static size_t only_split(const plm_leaf_way *way, size_t first)
     return best;
 }
 
-/* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first
- * stretch as long as a window that is narrow. */
-static size_t last_split(const plm_leaf_way *way, size_t first)
+/* Typical number of points of the tube's stations; 0 where there are none. */
+static double tube_count(const work *w, size_t first)
 {
-    const double limit = WIDE * way->tube;
-    size_t k = way->station_count, narrow = 0;
+    size_t count = 0;
+    for (size_t k = first; k < w->way.station_count; k++)
+        if (w->way.station[k].tube > TUBE_SHARE) w->value[count++] = (float)w->way.station[k].count;
+    return count ? plm_quantile(w->value, count, 0.5) : 0;
+}
+
+/* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first
+ * stretch as long as a window that is narrow, and either long or as full as a tube: a leaflet's torn tip hangs on a few
+ * points. */
+static size_t last_split(const work *w, size_t first)
+{
+    const plm_leaf_way *way = &w->way;
+    const double limit = WIDE * way->tube, typical = tube_count(w, first);
+    size_t k = way->station_count;
     while (k > first && way->station[k - 1].width < BLADE * way->tube) k--;
-    for (; k > first && narrow < (size_t)WINDOW; k--) narrow = way->station[k - 1].width > limit ? 0 : narrow + 1;
-    return k > first ? k + narrow : first;
+    while (k > first) {
+        if (way->station[k - 1].width > limit) {
+            k--;
+            continue;
+        }
+        const size_t split = k;
+        double points = 0;
+        for (; k > first && way->station[k - 1].width <= limit; k--) points += way->station[k - 1].count;
+        const double run = (double)(split - k);
+        if (run >= WINDOW && (run >= LONG_RUN * WINDOW || points >= FULL * typical * run)) return split;
+    }
+    return first;
 }
 
 /* Least squares of excess = c covered + a beyond over stations; c and a are not negative. Gives the sum of squares. */
@@ -344,7 +368,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     way->tube = tube_width(w, first);
     if (!(way->tube > 0)) return PLM_OK;
     const bool compound = s->habit == PLM_HABIT_COMPOUND;
-    const size_t split = compound ? last_split(way, first) : only_split(way, first);
+    const size_t split = compound ? last_split(w, first) : only_split(way, first);
     if (split <= first || split >= way->station_count) return PLM_OK;
     way->junction = change(way, first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
