@@ -20,7 +20,8 @@ static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the pe
 static const double NOISE_RADII = 10;      /* R in sigmas, at least: a noisier ball is round whatever it holds */
 static const double NOISE_BALL = 5; /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
 static const double TUBE_THICKNESS = 0.05;            /* radius in R, at least: thinner is a line of few points */
-static const double TUBE_LEAST = 0.13;                /* tubes shorter than this share of the size are none */
+static const double TUBE_LEAST = 0.13;                /* tubes shorter than this share of the size are none, ... */
+static const double TUBE_DOUBTFUL = 0.06;             /* ... but for this the petioles of a rosette */
 static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
 
@@ -150,6 +151,7 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;
     out.has_tubes = peak >= TUBE_LEAST * out.size;
+    out.is_doubtful = !out.has_tubes && peak >= TUBE_DOUBTFUL * out.size;
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;
     return status;

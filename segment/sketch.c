@@ -55,7 +55,8 @@ static plm_status classify(plm_sketch *sketch, plm_error *error)
     return smooth(&sketch->graph, sketch->tube, error);
 }
 
-plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_sketch *out, plm_error *error)
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, bool try_tubes, plm_sketch *out,
+                           plm_error *error)
 {
     plm_sketch sketch = {0};
     double cell;
@@ -63,6 +64,7 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
     if (status == PLM_OK) status = plm_thin(xyz, count, cell, &sketch.base, error);
     const float(*base)[3] = (const float(*)[3])sketch.base.xyz;
     if (status == PLM_OK) status = plm_find_scale(base, sketch.base.count, &sketch.scale, error);
+    if (try_tubes && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
     if (status == PLM_OK) {
         cell = fmax(sketch.scale.radius / WORKING_CELLS, sketch.scale.spacing);
         status = plm_thin(base, sketch.base.count, cell, &sketch.working, error);

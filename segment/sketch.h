@@ -37,8 +37,9 @@ typedef struct plm_sketch {
     uint32_t *leaf_flags;
 } plm_sketch;
 
-/** Thins the plant, finds its scale and the graph, and tells tubes from blades. */
-plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_sketch *sketch,
+/** Thins the plant, finds its scale and the graph, and tells tubes from blades.
+ * try_tubes: doubtful tubes count as tubes. */
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, bool try_tubes, plm_sketch *sketch,
                            plm_error *error);
 
 /** Sets classes right that no plant can have: tubes shorter than they are thick, specks of blade on a tube. */

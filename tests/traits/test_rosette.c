@@ -34,15 +34,20 @@ static plm_measurement measure(const char *trait, uint64_t seed, const plm_scan_
     return measurement;
 }
 
+static plm_scan_options depth_camera_at(uint64_t seed, bool potted)
+{
+    return (plm_scan_options){.scanner = PLM_SCANNER_RGBD,
+                              .seed = seed,
+                              .points = 45000,
+                              .noise = 5e-4,
+                              .outliers = potted ? 0 : 0.005,
+                              .has_pot = potted};
+}
+
 static plm_estimate height_of(uint64_t seed, bool potted, double *built)
 {
     plm_virtual_plant plant;
-    const plm_scan_options depth_camera = {.scanner = PLM_SCANNER_RGBD,
-                                           .seed = seed,
-                                           .points = 45000,
-                                           .noise = 5e-4,
-                                           .outliers = potted ? 0 : 0.005,
-                                           .has_pot = potted};
+    const plm_scan_options depth_camera = depth_camera_at(seed, potted);
     plm_measurement measurement = measure("plant_height", seed, &depth_camera, false, &plant);
     assert_int_equal(measurement.value_count, 1);
     const plm_estimate height = measurement.value[0].estimate;
@@ -74,6 +79,19 @@ static void soil_under_a_rosette_is_no_foot(void **unused)
     const plm_estimate height = height_of(501, true, &built);
     assert_near(height.value, built, 0.7e-3);
     assert_near(height.value, built, 2 * height.std_error);
+}
+
+/* The petioles that this camera sees are no longer than 0.12 of the plant's size: no more than folds of a single leaf. */
+static void petioles_that_are_hardly_seen_bear_leaves(void **unused)
+{
+    (void)unused;
+    plm_virtual_plant plant;
+    const plm_scan_options depth_camera = depth_camera_at(502, true);
+    plm_measurement measurement = measure("leaf_count", 502, &depth_camera, false, &plant);
+    assert_int_equal(measurement.value_count, 1);
+    assert_true(measurement.value[0].estimate.value == (double)plant.leaf_count);
+    plm_measurement_free(&measurement);
+    plm_virtual_plant_free(&plant);
 }
 
 static const plm_true_leaf *nearest_leaf(const plm_virtual_plant *plant, const double centroid[3])
@@ -112,6 +130,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_foot_is_as_low_as_it_was_seen),
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),
+        cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
         cmocka_unit_test(a_few_points_say_how_little_they_know),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
