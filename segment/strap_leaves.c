@@ -5,14 +5,65 @@
 
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
+#include "segment/strap_feet.h"
 #include "segment/strap_stem.h"
 #include "segment/strap_trunk.h"
 
 #include <math.h>
 
-static const double REACH = 0.08;        /* a leaf reaches so far beyond the next fork, in sizes of the plant */
-static const double LEAST_SHARE = 0.005; /* of the points that a leaf holds at least */
-static const double FOOT = 1.5;          /* the base: points so near to the stem's lowest node, in its radii */
+static const double REACH = 0.08;              /* a leaf reaches so far beyond the next fork, in sizes of the plant */
+static const double LEAST_SHARE = 0.005;       /* of the points that a leaf holds at least */
+static const double EDGE_CELLS[] = {2.2, 2.5}; /* longest edge, in cells: tried before that of the sketch */
+static const double LOOSE_SHARE = 0.0025;      /* of the points: a larger piece is a part of a leaf */
+static const double JOIN_RADII = 2.5;          /* as in segment/sketch.c */
+enum { NEIGHBOURS = 10 };
+static const double FOOT = 1.5; /* the base: points so near to the stem's lowest node, in its radii */
+
+/* The largest component but one. */
+static plm_status second_component(const plm_graph *graph, size_t *second, plm_error *error)
+{
+    plm_scratch scratch = {.error = error};
+    int32_t *component = plm_scratch_take(&scratch, graph->count, sizeof *component);
+    uint32_t *stack = plm_scratch_take(&scratch, graph->count, sizeof *stack);
+    const size_t components = scratch.failed ? 0 : plm_graph_components(graph, NULL, component, stack);
+    size_t *size = plm_scratch_take(&scratch, components + 1, sizeof *size), largest = 0;
+    *second = 0;
+    for (size_t i = 0; !scratch.failed && i < graph->count; i++) size[component[i]]++;
+    for (size_t k = 0; !scratch.failed && k < components; k++) {
+        const size_t less = size[k] < largest ? size[k] : largest;
+        if (size[k] > largest) largest = size[k];
+        if (less > *second) *second = less;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+/* Long edges join blades that run side by side, the more so by the stray points of noise between them: the shortest by
+ * which no piece of a leaf comes loose are taken. */
+static plm_status shorten_edges(plm_sketch *sketch, plm_error *error)
+{
+    const double cell = sketch->working.cell;
+    const double most = LOOSE_SHARE * (double)sketch->working.count;
+    plm_graph graph = {0};
+    plm_status status = PLM_OK;
+    for (size_t k = 0; k < sizeof EDGE_CELLS / sizeof *EDGE_CELLS; k++) {
+        size_t second;
+        status = plm_graph_build((const float(*)[3])sketch->working.xyz, sketch->working.count, NEIGHBOURS,
+                                 EDGE_CELLS[k] * cell, &graph, error);
+        if (status == PLM_OK) status = second_component(&graph, &second, error);
+        if (status != PLM_OK || (double)second <= most) break;
+        plm_graph_free(&graph);
+    }
+    if (status == PLM_OK && graph.first)
+        status = plm_graph_join(&graph, cell, JOIN_RADII * sketch->scale.radius, error);
+    if (status == PLM_OK && graph.first) {
+        plm_graph_free(&sketch->graph);
+        sketch->graph = graph;
+    } else {
+        plm_graph_free(&graph);
+    }
+    return status;
+}
 
 static size_t base_points(const plm_sketch *sketch, uint32_t *source)
 {
@@ -35,12 +86,12 @@ static size_t base_points(const plm_sketch *sketch, uint32_t *source)
 /* The stem is the trunk as far as its line says so; what else is trunk (lobes and folds that the tree swallowed, and what
  * lies below a touch) goes to the leaf whose surface goes on there, or else to the one that is nearest along the graph
  * without crossing the stem. */
-static plm_status mark_stem(plm_sketch *sketch, const float *from_base, uint32_t *source, bool *allowed,
-                            float *distance, int32_t *origin, plm_error *error)
+static plm_status mark_stem(plm_sketch *sketch, const float *from_base, const float *order, uint32_t *source,
+                            bool *allowed, float *distance, int32_t *origin, plm_error *error)
 {
     const size_t count = sketch->working.count;
     size_t sources = 0;
-    plm_status status = plm_strap_trunk(sketch, from_base, error);
+    plm_status status = plm_strap_trunk(sketch, order, error);
     if (status != PLM_OK) return status;
     for (uint32_t i = 0; i < count; i++) {
         allowed[i] = !sketch->is_stem[i] && isfinite(from_base[i]);
@@ -68,9 +119,10 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     uint32_t *source = plm_scratch_take(&scratch, count, sizeof *source);
     float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
     float *nearest = plm_scratch_take(&scratch, count, sizeof *nearest);
+    float *outwards = plm_scratch_take(&scratch, count, sizeof *outwards);
     int32_t *origin = plm_scratch_take(&scratch, count, sizeof *origin);
     bool *allowed = plm_scratch_take(&scratch, count, sizeof *allowed);
-    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    plm_status status = scratch.failed ? PLM_E_MEMORY : shorten_edges(sketch, error);
     if (status == PLM_OK) {
         const plm_walk walk = {.source = source, .source_count = base_points(sketch, source), .distance = distance};
         status = plm_graph_walk(&sketch->graph, &walk, error);
@@ -79,7 +131,8 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
         status = plm_merge_tree(&sketch->graph, distance, REACH * sketch->scale.size,
                                 (size_t)(LEAST_SHARE * (double)count), sketch->leaf, leaves, error);
     double *foot = NULL;
-    if (status == PLM_OK && !(foot = plm_alloc(*leaves + 1, sizeof *foot, error))) status = PLM_E_MEMORY;
+    if (status == PLM_OK && !(foot = plm_alloc(*leaves + PLM_STRAP_FEET_MOST, sizeof *foot, error)))
+        status = PLM_E_MEMORY;
     if (status == PLM_OK) {
         for (size_t k = 0; k < *leaves; k++) foot[k] = INFINITY;
         for (size_t i = 0; i < count; i++)
@@ -91,9 +144,16 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
             const int32_t leaf = sketch->leaf[i];
             if (leaf >= 0) foot[leaf] = fmin(foot[leaf], (double)distance[i]);
         }
-        status = mark_stem(sketch, distance, source, allowed, nearest, origin, error);
-        *along = foot;
+        status = mark_stem(sketch, distance, distance, source, allowed, nearest, origin, error);
     }
+    bool apart = false;
+    if (status == PLM_OK) status = plm_strap_feet(sketch, distance, outwards, foot, leaves, &apart, error);
+    if (status == PLM_OK && apart)
+        status = mark_stem(sketch, distance, outwards, source, allowed, nearest, origin, error);
+    if (status == PLM_OK)
+        *along = foot;
+    else
+        plm_free(foot);
     plm_scratch_free(&scratch, NULL);
     return status;
 }

@@ -72,6 +72,23 @@ static void blades_that_touch_keep_their_feet(void **unused)
     assert_true(splat.worst_leaf >= 0.9);
 }
 
+/* The tip of one blade lies along another, far from the feet of both. */
+static void a_tip_on_a_blade_is_a_leaf(void **unused)
+{
+    (void)unused;
+    const label_score splat =
+        check("maize", PLM_HABIT_STRAP, 505,
+              &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 505, .points = 45000, .noise = 5e-4}, 1, 0.9);
+    assert_true(splat.worst_leaf >= 0.75);
+}
+
+/* Two blades rise side by side, and the noise strews points between them. */
+static void noise_joins_no_blades(void **unused)
+{
+    (void)unused;
+    check("maize", PLM_HABIT_STRAP, 407, &(plm_scan_options){DEPTH_CAMERA, .seed = 407, .outliers = 0.005}, 1, 0.6);
+}
+
 /* The last internode is a closed tube like those below it, and feet of leaves are none of the stem. */
 static void the_stem_of_maize_is_its_tube(void **unused)
 {
@@ -94,6 +111,8 @@ static void noise_makes_no_petioles_of_straps(void **unused)
     (void)unused;
     const label_score score =
         check("maize", PLM_HABIT_STRAP, 102, &(plm_scan_options){DEPTH_CAMERA, .seed = 102}, 0.95, 0.65);
+    /* Too few of the feet are thick, and too few of the blades are round, for either alone to tell */
+    check("maize", PLM_HABIT_STRAP, 302, &(plm_scan_options){DEPTH_CAMERA, .seed = 3, .outliers = 0.005}, 1, 0.8);
     assert_true(score.iou[PLM_LABEL_STEM] >= 0.55); /* feet on alternate sides draw no line of the stem aside */
 }
 
@@ -197,6 +216,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
                                        cmocka_unit_test(blades_that_touch_keep_their_feet),
+                                       cmocka_unit_test(a_tip_on_a_blade_is_a_leaf),
+                                       cmocka_unit_test(noise_joins_no_blades),
                                        cmocka_unit_test(the_stem_of_maize_is_its_tube),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
                                        cmocka_unit_test(noise_hides_no_foot_in_the_stem),

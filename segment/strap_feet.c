@@ -1,0 +1,135 @@
+/* segment/strap_feet.c: where the tip of one blade lies on another, the tree that grows from the tips has one leaf of both.
+ * The same tree upside down grows from the feet: where two legs of a leaf meet that are long and stand apart, it is two
+ * leaves, and the meeting is a touch. */
+#include "segment/strap_feet.h"
+
+#include "segment/merge_tree.h"
+#include "segment/scratch.h"
+#include "segment/stem_fit.h"
+
+#include <math.h>
+
+static const double LEG = 0.1;           /* length of a leg below the meeting, in sizes of the plant */
+static const double LEAST_SHARE = 0.005; /* of the points that a leg holds at least */
+static const double CLEAR = 2;           /* nearer to the stem's line, in its radii, feet wrap the stem and touch */
+static const double APART = 0.08;        /* of the lower ends of two legs, in sizes: else a leaf with a slit */
+
+typedef struct work {
+    plm_sketch *sketch;
+    const float *from_base;
+    float *upside, *reach;
+    int32_t *leg;
+    size_t legs;
+    uint32_t *low;   /* of each leg, the point nearest to the base */
+    uint32_t *tip;   /* of each leaf, its farthest point */
+    int32_t *leaf;   /* of each leg, the leaf that it becomes; -1: none of its own */
+    double farthest; /* of all points */
+} work;
+
+static void start_from_feet(work *w)
+{
+    const plm_sketch *s = w->sketch;
+    for (size_t i = 0; i < s->working.count; i++) {
+        if (isfinite(w->from_base[i])) w->farthest = fmax(w->farthest, w->from_base[i]);
+        w->reach[i] = (float)(LEG * s->scale.size);
+    }
+    for (size_t i = 0; i < s->working.count; i++) {
+        plm_stem_place place = {0};
+        w->upside[i] = INFINITY;
+        if (s->leaf[i] < 0 || s->is_stem[i] || !isfinite(w->from_base[i])) continue;
+        const double off = plm_stem_nearest(&s->stem, s->working.xyz[i], &place);
+        if (off > CLEAR * place.radius + 2 * s->scale.noise) w->upside[i] = (float)(w->farthest - w->from_base[i]);
+    }
+}
+
+static void find_ends(work *w, size_t leaves)
+{
+    const plm_sketch *s = w->sketch;
+    for (size_t k = 0; k < leaves; k++) w->tip[k] = UINT32_MAX;
+    for (size_t k = 0; k < w->legs; k++) w->low[k] = UINT32_MAX;
+    for (uint32_t i = 0; i < s->working.count; i++) {
+        if (!isfinite(w->upside[i])) continue;
+        uint32_t *tip = &w->tip[s->leaf[i]];
+        if (*tip == UINT32_MAX || w->upside[i] < w->upside[*tip]) *tip = i;
+        if (w->leg[i] < 0) continue;
+        uint32_t *low = &w->low[w->leg[i]];
+        if (*low == UINT32_MAX || w->upside[i] > w->upside[*low]) *low = i;
+    }
+}
+
+static int32_t new_leaf(const work *w, size_t leg, double *foot, size_t *leaves)
+{
+    foot[*leaves] = w->from_base[w->low[leg]];
+    return (int32_t)(*leaves)++;
+}
+
+/* The leaf of each leg: the first one of a leaf keeps its number. Where the tip is part of a leg, nothing lies beyond a
+ * meeting of legs. */
+static void name_legs(work *w, double *foot, size_t *leaves)
+{
+    const plm_sketch *s = w->sketch;
+    const size_t before = *leaves;
+    for (size_t k = 0; k < w->legs; k++) {
+        const int32_t own = s->leaf[w->low[k]];
+        w->leaf[k] = -1;
+        if (w->leg[w->tip[own]] >= 0) continue;
+        bool is_first = true, is_apart = true;
+        for (size_t j = 0; j < k; j++) {
+            if (s->leaf[w->low[j]] != own) continue;
+            is_first = false;
+            is_apart &= plm_graph_length(&s->graph, w->low[k], w->low[j]) > APART * s->scale.size;
+        }
+        if (is_first)
+            w->leaf[k] = own;
+        else if (is_apart && *leaves < before + PLM_STRAP_FEET_MOST)
+            w->leaf[k] = new_leaf(w, k, foot, leaves);
+    }
+}
+
+/* Whether the leaf's legs have become leaves of their own, and how many. */
+static void take_apart(work *w, size_t before, bool *split, float *outwards)
+{
+    plm_sketch *s = w->sketch;
+    for (size_t k = 0; k < w->legs; k++)
+        if (w->leaf[k] >= (int32_t)before) split[s->leaf[w->low[k]]] = true;
+    for (size_t i = 0; i < s->working.count; i++) {
+        outwards[i] = INFINITY;
+        if (s->leaf[i] < 0 || s->is_stem[i] || !split[s->leaf[i]]) continue;
+        if (w->leg[i] < 0) outwards[i] = w->upside[i];
+        s->leaf[i] = w->leg[i] >= 0 ? w->leaf[w->leg[i]] : -1;
+    }
+}
+
+plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, float *outwards, double *foot, size_t *leaves,
+                          bool *apart, plm_error *error)
+{
+    const size_t count = sketch->working.count, before = *leaves;
+    plm_scratch scratch = {.error = error};
+    work w = {.sketch = sketch,
+              .from_base = from_base,
+              .upside = plm_scratch_take(&scratch, count, sizeof *w.upside),
+              .reach = plm_scratch_take(&scratch, count, sizeof *w.reach),
+              .leg = plm_scratch_take(&scratch, count, sizeof *w.leg),
+              .tip = plm_scratch_take(&scratch, before + 1, sizeof *w.tip)};
+    bool *split = plm_scratch_take(&scratch, before + 1, sizeof *split);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
+        start_from_feet(&w);
+        const plm_merge_rule rule = {.distance = w.upside,
+                                     .reach = w.reach,
+                                     .apart = sketch->leaf,
+                                     .least = (size_t)(LEAST_SHARE * (double)count)};
+        status = plm_merge_tree_by(&sketch->graph, &rule, w.leg, &w.legs, error);
+    }
+    w.low = plm_scratch_take(&scratch, w.legs + 1, sizeof *w.low);
+    w.leaf = plm_scratch_take(&scratch, w.legs + 1, sizeof *w.leaf);
+    if (status == PLM_OK && scratch.failed) status = PLM_E_MEMORY;
+    if (status == PLM_OK) {
+        find_ends(&w, before);
+        name_legs(&w, foot, leaves);
+        if (*leaves > before) take_apart(&w, before, split, outwards);
+        *apart = *leaves > before;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
