@@ -86,7 +86,7 @@ static void name_legs(work *w, double *foot, size_t *leaves)
     }
 }
 
-/* Whether the leaf's legs have become leaves of their own, and how many. */
+/* Legs become their leaves; what lies beyond the meeting of legs and near the stem waits to be shared out. */
 static void take_apart(work *w, size_t before, bool *split, float *outwards)
 {
     plm_sketch *s = w->sketch;

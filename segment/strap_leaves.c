@@ -47,7 +47,7 @@ static plm_status shorten_edges(plm_sketch *sketch, plm_error *error)
     plm_graph graph = {0};
     plm_status status = PLM_OK;
     for (size_t k = 0; k < sizeof EDGE_CELLS / sizeof *EDGE_CELLS; k++) {
-        size_t second;
+        size_t second = 0;
         status = plm_graph_build((const float(*)[3])sketch->working.xyz, sketch->working.count, NEIGHBOURS,
                                  EDGE_CELLS[k] * cell, &graph, error);
         if (status == PLM_OK) status = second_component(&graph, &second, error);
