@@ -8,6 +8,7 @@
 #include "traits/axis.h"
 #include "traits/blurred_end.h"
 #include "traits/centre_line.h"
+#include "traits/petiole_course.h"
 #include "traits/tube_fit.h"
 
 #include <string.h>
@@ -416,8 +417,11 @@ static plm_status fit(const plm_scene *scene, petiole *p, plm_axis *axis, plm_er
     double base[3], far[3];
     find_stem(scene, p);
     first_ends(p, base, far);
-    plm_status status =
-        plm_centre_line_fit((const double(*)[3])p->points.xyz, p->points.count, base, far, 1, 1, &p->line, error);
+    const bool has_leaflets = p->leaf && p->leaf->leaflet;
+    plm_status status = has_leaflets ? plm_petiole_course(&p->points, base, far, error) : PLM_OK;
+    if (status == PLM_OK)
+        status =
+            plm_centre_line_fit((const double(*)[3])p->points.xyz, p->points.count, base, far, 1, 1, &p->line, error);
     if (status == PLM_OK) status = fit_line(&p->points, base, far, p->line.distance, &p->line, error);
     if (status == PLM_OK) status = fit_tube(p, error);
     if (status == PLM_OK && p->stem) status = refit_free_part(p, error);

@@ -146,26 +146,46 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
     return status;
 }
 
-/** Factors of the corrections: of the halves' deficit, of noise x area, and of the reach of a splat's discs x area; their
- * standard errors likewise. */
+/** Factors of the corrections: of the halves' deficit, of noise x area, of its square over the volume, and of the reach of a
+ * splat's discs x area; the standard errors of the first two; and likewise of the hull's area, relatively. */
 typedef struct hull_factors {
-    double deficit, noise, disc, deficit_error, noise_error;
+    double deficit, noise, thin, disc, deficit_error, noise_error;
     /** Deficits of less than this many shells come from smooth surfaces, where projection takes the noise away; it stays at
      * rims and tips, which a random half of the points misses. */
     double smooth;
-    double area, area_error; /**< by how much of what noise adds to the volume it adds to the area, relatively */
+    double area_deficit, area_noise, area_noise_error;
 } hull_factors;
 
 /* The area of a ball grows by two thirds of what its volume grows by; noise thickens the flat hulls of plants rather than
  * widening them. */
 static const double ball = 2.0 / 3;
 
+/* thin: the noise of rims adds to a hull on both sides, the more the less lies between them: fitted, with the two before, to 66
+ * virtual splats from rosettes of 20 mm to maize (error 1.2 to 0.7 %; on 16 others 1.6 to 0.9 %). */
 static hull_factors factors_of(const plm_scene *scene, bool noisy)
 {
-    if (!noisy) return (hull_factors){2.0, 0, 0, 0.5, 0, 0, 0, 0};
-    if (scene->sampling.fused) return (hull_factors){0, 0.45, 0, 0.5, 0.4, 0, 0.2, 0.33};
-    if (scene->is_splat) return (hull_factors){1.9, 0.4, 0.4, 0.8, 0.4, 0, ball, 0.33};
-    return (hull_factors){3.5, 2.3, 0, 1.0, 0.4, 0.13, 0.5, 0.15};
+    if (!noisy) return (hull_factors){.deficit = 2.0, .deficit_error = 0.5, .area_deficit = 2.0};
+    if (scene->sampling.fused)
+        return (hull_factors){
+            .noise = 0.45, .deficit_error = 0.5, .noise_error = 0.4, .area_noise = 0.09, .area_noise_error = 0.15};
+    if (scene->is_splat)
+        return (hull_factors){.deficit = 1.9,
+                              .noise = 0.4,
+                              .disc = 0.4,
+                              .deficit_error = 0.8,
+                              .noise_error = 0.4,
+                              .area_deficit = 1.9,
+                              .area_noise = 0.4 * ball,
+                              .area_noise_error = 0.13};
+    return (hull_factors){.deficit = 2.9,
+                          .noise = 1.3,
+                          .thin = 10.9,
+                          .deficit_error = 1.0,
+                          .noise_error = 0.4,
+                          .smooth = 0.13,
+                          .area_deficit = 3.5,
+                          .area_noise = 1.15,
+                          .area_noise_error = 0.35};
 }
 
 /* Values and standard errors from what was measured. */
@@ -176,15 +196,16 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
     const double deficit = m->volume - m->half_volume, shell = noisy ? sigma * m->area : 0,
                  disc = f.disc * scene->sampling.extent * m->area;
     const double rims = f.smooth > 0 && shell > 0 ? deficit / (deficit + f.smooth * shell) : 1;
-    scene->hull_volume = m->volume + f.deficit * deficit - f.noise * rims * shell + disc;
+    const double per_volume = m->volume > 0 ? m->area / m->volume : 0;
+    const double thickened = f.thin * sigma * per_volume * shell;
+    scene->hull_volume = m->volume + f.deficit * deficit - rims * (f.noise * shell + thickened) + disc;
     scene->hull_volume_error = sqrt(pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) + disc * disc +
                                     (noisy ? 0 : m->half_volume_sd * m->half_volume_sd));
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
-    const double area_deficit = m->area - m->half_area;
-    const double per_volume = m->volume > 0 ? m->area / m->volume : 0, added = f.noise * rims * shell * per_volume;
-    scene->hull_area = m->area + f.deficit * area_deficit - f.area * added + ball * disc * per_volume;
+    const double area_deficit = m->area - m->half_area, added = rims * shell * per_volume;
+    scene->hull_area = m->area + f.area_deficit * area_deficit - f.area_noise * added + ball * disc * per_volume;
     scene->hull_area_error =
-        sqrt(pow(0.8 * area_deficit, 2) + pow(f.area_error * added, 2) + pow(ball * disc * per_volume, 2));
+        sqrt(pow(0.8 * area_deficit, 2) + pow(f.area_noise_error * added, 2) + pow(ball * disc * per_volume, 2));
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";
 }
 
