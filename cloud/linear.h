@@ -26,6 +26,11 @@ static inline double plm_norm(const double a[3])
     return sqrt(plm_dot(a, a));
 }
 
+static inline double plm_distance(const double a[3], const double b[3])
+{
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
 /** Scales a to length 1; a zero vector stays as it is. Gives the length it had. */
 static inline double plm_normalise(double a[3])
 {

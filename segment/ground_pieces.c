@@ -9,9 +9,8 @@
 enum { FOOT_LAYERS = 4, GROUND = -1, OPEN = -2, JOIN = 2 };
 
 static const float SOIL_SHARE = 0.2f; /* of the plant among the points of a colour: less is the soil's */
-static const double ROOTED =
-    0.1; /* points of other colours per point of the soil's about a foot: 0.2 and more under stems,
-                                     0.03 and less under rosettes */
+/* Points of other colours per point of the soil's about a foot: 0.2 and more under stems, 0.03 and less under rosettes. */
+static const double ROOTED = 0.1;
 
 /* ---- Pieces --------------------------------------------------------------------------------------------------- */
 

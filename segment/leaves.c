@@ -10,11 +10,11 @@
 
 static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
 static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
-static const double STRAP_EVIDENCE =
-    0.5; /* both weigh half, by the area of the leaves; more than this: strap leaves, ... */
+/* Both weigh half, by the area of the leaves; more than this: strap leaves, ... */
+static const double STRAP_EVIDENCE = 0.5;
 static const double STRAP_RISING = 0.36; /* ... or than this where larger balls find more tubes: the folds of straps */
-static const double FEET =
-    2; /* tubes without a leaf are so near, in R, to the petioles of a rosette that they are feet of */
+/* Tubes without a leaf that are so near, in R, to the petioles of a rosette are their feet. */
+static const double FEET = 2;
 static const double TUBE_LEAVES = 0.5; /* more of what is off the stem is tube: straps */
 /* Noise thickens blades and thins no foot: neither says enough then, and both together do (0.75 of two maize that neither told,
  * 0.54 at most over 40 plants with petioles). */

@@ -12,8 +12,9 @@ typedef struct plm_scale {
     double stem_radius; /**< 75 % quantile of the radii of tube-like points */
     double tube_length; /**< of all tube-like points together, at R */
     bool has_tubes;
-    bool is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well: has_tubes is false */
-    bool rises;       /**< tube length still grew at the largest R: leaves may pass as stems */
+    bool
+        is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well; then has_tubes is false as found here */
+    bool rises; /**< tube length still grew at the largest R: leaves may pass as stems */
 } plm_scale;
 
 /** Finds the scale of count points (offsets near their middle; thinned to some 10^4 to 10^5 points, for the time).

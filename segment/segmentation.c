@@ -125,7 +125,7 @@ static plm_status is_rosette(const plm_sketch *sketch, bool *answer, plm_error *
         all++;
         if (++size[sketch->leaf[i]] > largest) largest = size[sketch->leaf[i]];
     }
-    *answer = sketch->habit == PLM_HABIT_ROSETTE && 2 * largest <= all;
+    *answer = all && sketch->habit == PLM_HABIT_ROSETTE && 2 * largest <= all;
     plm_free(size);
     return PLM_OK;
 }
@@ -148,8 +148,9 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
         status = plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points of a plant");
         goto done;
     }
-    status = find_organs((const float(*)[3])xyz, count, options, true, &sketch, error);
-    if (status == PLM_OK && sketch.scale.is_doubtful) {
+    const bool may_be_rosette = options->habit == PLM_HABIT_UNKNOWN || options->habit == PLM_HABIT_ROSETTE;
+    status = find_organs((const float(*)[3])xyz, count, options, may_be_rosette, &sketch, error);
+    if (status == PLM_OK && may_be_rosette && sketch.scale.is_doubtful) {
         bool rosette;
         status = is_rosette(&sketch, &rosette, error);
         if (status == PLM_OK && !rosette)

@@ -20,9 +20,9 @@ static const double CUT_END = 1.25;   /* ... and so far before the path's end, w
 static const double BEND = 0.35;      /* kinks (radians) and ... */
 static const double DROP = 0.25;      /* ... losses of radius that count as one unit of evidence */
 static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
-static const double RISE_LEAST =
-    0.15; /* of the size: 0.22 and more on stems, virtual and real, while ways along petioles of
-                                             rosettes in noise, cut where they thin, end at 0.1 or less */
+/* Of the size: a stem that rises less is none. 0.22 and more on stems, virtual and real, while ways along petioles of rosettes
+ * in noise, cut where they thin, end at 0.1 or less. */
+static const double RISE_LEFT = 0.15;
 
 static double tube_of_blade(const plm_side_group *group)
 {
@@ -181,7 +181,7 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
 static void forget_low_stem(plm_sketch *sketch)
 {
     const plm_stem_path *stem = &sketch->stem;
-    if (stem->node[stem->count - 1][2] - stem->node[0][2] >= RISE_LEAST * sketch->scale.size) return;
+    if (stem->node[stem->count - 1][2] - stem->node[0][2] >= RISE_LEFT * sketch->scale.size) return;
     plm_stem_path_free(&sketch->stem);
     for (size_t i = 0; i < sketch->working.count; i++) sketch->is_stem[i] = false;
 }

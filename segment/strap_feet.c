@@ -87,11 +87,14 @@ static void name_legs(work *w, double *foot, size_t *leaves)
 }
 
 /* Legs become their leaves; what lies beyond the meeting of legs and near the stem waits to be shared out. */
-static void take_apart(work *w, size_t before, bool *split, float *outwards)
+static void take_apart(work *w, size_t before, bool *split, double *foot, float *outwards)
 {
     plm_sketch *s = w->sketch;
     for (size_t k = 0; k < w->legs; k++)
         if (w->leaf[k] >= (int32_t)before) split[s->leaf[w->low[k]]] = true;
+    for (size_t k = 0; k < w->legs; k++) /* the leg that keeps the number stands on its own foot, not on the lowest */
+        if (w->leaf[k] >= 0 && w->leaf[k] < (int32_t)before && split[w->leaf[k]])
+            foot[w->leaf[k]] = w->from_base[w->low[k]];
     for (size_t i = 0; i < s->working.count; i++) {
         outwards[i] = INFINITY;
         if (s->leaf[i] < 0 || s->is_stem[i] || !split[s->leaf[i]]) continue;
@@ -127,7 +130,7 @@ plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, float *out
     if (status == PLM_OK) {
         find_ends(&w, before);
         name_legs(&w, foot, leaves);
-        if (*leaves > before) take_apart(&w, before, split, outwards);
+        if (*leaves > before) take_apart(&w, before, split, foot, outwards);
         *apart = *leaves > before;
     }
     plm_scratch_free(&scratch, NULL);

@@ -6,11 +6,6 @@
 
 enum { PLM_CURVE_STEPS = 96 };
 
-static inline double plm_distance(const double a[3], const double b[3])
-{
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 /** Orthonormal frame along a curve: tangent, side (left of the tangent seen along the normal) and normal (the upper
  * side of a blade). side = normal x tangent. */
 typedef struct plm_frame_at {

@@ -61,11 +61,12 @@ plm_status plm_trait_leaf_azimuth(const plm_scene *scene, const plm_organ *leaf,
 plm_status plm_trait_leaf_azimuth_from_stem(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
                                             plm_error *error)
 {
-    (void)error;
     double base[2], of_base;
+    bool found;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
-    if (!plm_plant_foot(scene, base, &of_base))
-        return plm_not_applicable(out, "neither a stem nor petioles tell where the plant stands");
+    const plm_status status = plm_plant_foot(scene, base, &of_base, &found, error);
+    if (status != PLM_OK) return status;
+    if (!found) return plm_not_applicable(out, "neither a stem nor petioles tell where the plant stands");
     const double *centroid = leaf->surface.plane.centroid;
     const double of_leaf = 0.5 * leaf->surface.spacing + 0.2 * leaf->surface.noise;
     out->method = "plant base to area centroid";

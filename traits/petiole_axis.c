@@ -23,7 +23,8 @@ static const double turned_round = 0.4; /* of the length: the base lies so much 
 static const double least_ring = 0.45;  /* share of a ring that must be outside of the stem */
 /* Where the labels are our own: what they leave open of the junction along the petiole and of the foot across it, in radii
  * and in SDs of the noise, and of the direction (medians over simulated plants). */
-static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.6;
+static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.75;
+static const double own_free_foot_noise = 1.4; /* instead, where no stem tells the foot: rosettes */
 static const double own_direction = 0.25 * PLM_PI / 180;
 static const double node_turn = 0.4 * PLM_PI / 180; /* of the stem at its nodes, within less than a span of its line */
 static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */
@@ -92,24 +93,18 @@ static void mean_of_nearest(const petiole *p, const double *keys, double mean[3]
     for (int k = 0; k < 3; k++) mean[k] /= (double)taken;
 }
 
-static double gap_between(const double a[3], const double b[3])
-{
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return plm_norm(d);
-}
-
 /* Ends without a stem: of the two ends of the largest extent, the one farther from the petiole's leaf is the base;
  * without a leaf, the lower one. */
 static void ends_without_stem(petiole *p, double base[3], double far[3])
 {
     double one[3], other[3];
     const size_t count = p->points.count;
-    for (size_t i = 0; i < count; i++) p->distance[i] = -gap_between(p->points.xyz[i], p->organ->centroid);
+    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], p->organ->centroid);
     mean_of_nearest(p, p->distance, one);
-    for (size_t i = 0; i < count; i++) p->distance[i] = -gap_between(p->points.xyz[i], one);
+    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], one);
     mean_of_nearest(p, p->distance, other);
     const bool one_is_base =
-        p->leaf ? gap_between(one, p->leaf->centroid) > gap_between(other, p->leaf->centroid) : one[2] < other[2];
+        p->leaf ? plm_distance(one, p->leaf->centroid) > plm_distance(other, p->leaf->centroid) : one[2] < other[2];
     memcpy(base, one_is_base ? one : other, 3 * sizeof *base);
     memcpy(far, one_is_base ? other : one, 3 * sizeof *far);
 }
@@ -120,7 +115,7 @@ static double gap_to_leaf(const petiole *p, const double place[3])
     double least = INFINITY;
     for (size_t i = 0; i < p->leaf->count; i++) {
         const float *xyz = p->leaf->xyz[i];
-        least = fmin(least, gap_between((double[3]){xyz[0], xyz[1], xyz[2]}, place));
+        least = fmin(least, plm_distance((double[3]){xyz[0], xyz[1], xyz[2]}, place));
     }
     return least;
 }
@@ -136,11 +131,11 @@ static void first_ends(petiole *p, double base[3], double far[3])
     double foot;
     for (size_t i = 0; i < p->points.count; i++) p->distance[i] = off_stem(p->stem->axis, p->points.xyz[i], &foot);
     mean_of_nearest(p, p->distance, base);
-    for (size_t i = 0; i < p->points.count; i++) p->distance[i] = -gap_between(p->points.xyz[i], base);
+    for (size_t i = 0; i < p->points.count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], base);
     mean_of_nearest(p, p->distance, far);
     if (!p->leaf) return;
     const double turned = gap_to_leaf(p, far) - gap_to_leaf(p, base);
-    if (turned < turned_round * gap_between(base, far)) return;
+    if (!(turned > turned_round * plm_distance(base, far))) return;
     p->stem = NULL;
     ends_without_stem(p, base, far);
 }
@@ -150,7 +145,7 @@ static void first_ends(petiole *p, double base[3], double far[3])
 static plm_status fit_line(const plm_tube_points *points, const double base[3], const double far[3], double radius,
                            plm_centre_line *line, plm_error *error)
 {
-    const double length = gap_between(base, far);
+    const double length = plm_distance(base, far);
     const int spans = (int)fmin(fmax(length / (radii_per_span * radius), 1), MOST_SPANS);
     return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, base, far, 3, spans, line, error);
 }
@@ -297,7 +292,7 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
         const double t = plm_curve_foot(line, p->points.xyz[i]);
         double at[3];
         plm_curve_point(line, t, at);
-        if (gap_between(at, p->points.xyz[i]) <= reach) position[count++] = plm_curve_length(line, 0, t);
+        if (plm_distance(at, p->points.xyz[i]) <= reach) position[count++] = plm_curve_length(line, 0, t);
     }
     return count;
 }
@@ -403,7 +398,8 @@ static plm_status finish(petiole *p, plm_axis *axis, plm_error *error)
         end_error(line, axis->begin, axis->end, base.std_error, hypot(far.std_error, 0.3 * p->radius));
     axis->direction_error = sqrt(1.44 * fit_error * fit_error + shift_error * shift_error + model_error * model_error);
     if (p->own) {
-        const double across = hypot(own_foot_radii * p->radius, own_foot_noise * p->noise) / axis->length;
+        const double foot_noise = p->stem ? own_foot_noise : own_free_foot_noise;
+        const double across = hypot(own_foot_radii * p->radius, foot_noise * p->noise) / axis->length;
         axis->direction_error =
             sqrt(axis->direction_error * axis->direction_error + across * across + own_direction * own_direction);
     }

@@ -1,8 +1,9 @@
 /* traits/petiole_course.c: the course of a petiole among what branches off it. Petiolules are petiole as well, and in noise
  * small leaflets look like them: the farthest of their points need not be the rachis' end. Of the ends that could be, the
- * right one is that to which a gentle line from the base is longest on points. */
+ * right one is that to which a gentle line from the base is clearly longest on points. */
 #include "traits/petiole_course.h"
 
+#include "cloud/linear.h"
 #include "cloud/order.h"
 #include "traits/centre_line.h"
 
@@ -26,13 +27,6 @@ typedef struct course {
     bool is_first; /* to the farthest point */
 } course;
 
-static double gap(const double a[3], const double b[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sqrt(sum);
-}
-
 /* Distances of the points from a curve, and their parameters on it. */
 static void measure(const plm_tube_points *points, const plm_curve *curve, double *distance, double *t)
 {
@@ -40,7 +34,7 @@ static void measure(const plm_tube_points *points, const plm_curve *curve, doubl
         double at[3];
         t[i] = plm_curve_foot(curve, points->xyz[i]);
         plm_curve_point(curve, t[i], at);
-        distance[i] = gap(at, points->xyz[i]);
+        distance[i] = plm_distance(at, points->xyz[i]);
     }
 }
 
@@ -55,7 +49,7 @@ static bool next_end(const plm_tube_points *points, const double *from_base, boo
     memcpy(tip, points->xyz[farthest], sizeof tip);
     memset(far, 0, 3 * sizeof *far);
     for (size_t i = 0; i < points->count; i++) {
-        const double off = gap(points->xyz[i], tip);
+        const double off = plm_distance(points->xyz[i], tip);
         if (off <= apart * length) used[i] = true;
         if (off > one_end * length) continue;
         for (int k = 0; k < 3; k++) far[k] += points->xyz[i][k];
@@ -73,7 +67,8 @@ static double supported(const plm_tube_points *points, const course *way, double
     measure(points, &way->curve, distance, t);
     for (size_t i = 0; i < points->count; i++) {
         if (distance[i] > within || !(fabs(t[i]) < 1)) continue;
-        bool *part = &has[(int)(0.5 * (t[i] + 1) * PARTS)];
+        const int at = (int)(0.5 * (t[i] + 1) * PARTS); /* PARTS where t rounds up to 1 */
+        bool *part = &has[at < PARTS ? at : PARTS - 1];
         parts += !*part;
         *part = true;
     }
@@ -117,20 +112,21 @@ static plm_status find_course(const plm_tube_points *points, const double base[3
     course way[MOST_ENDS];
     size_t count = 0;
     for (size_t i = 0; i < points->count; i++) {
-        from_base[i] = gap(points->xyz[i], base);
+        from_base[i] = plm_distance(points->xyz[i], base);
         length = fmax(length, from_base[i]);
     }
     for (int k = 0; k < MOST_ENDS && next_end(points, from_base, used, length, way[count].far); k++) {
         const plm_status status = fit_course(points, base, &way[count], distance, t);
         if (status == PLM_E_MEMORY) return plm_fail(error, status, "out of memory");
-        if (status == PLM_OK) thin = fmin(thin, way[count++].core);
+        if (status != PLM_OK) continue;
+        way[count].is_first = k == 0;
+        thin = fmin(thin, way[count++].core);
     }
     for (size_t k = 0; k < count; k++) {
         const double on = supported(points, &way[k], reach * thin, distance, t);
         if (on <= (k ? longer * most : 0)) continue;
         most = on;
         *found = way[k];
-        found->is_first = k == 0;
     }
     return most > 0 ? PLM_OK : PLM_E_DEGENERATE;
 }

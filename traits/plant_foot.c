@@ -4,9 +4,9 @@
 #include "traits/plant_foot.h"
 
 #include "cloud/linear.h"
+#include "cloud/order.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { FEWEST_POINTS = 8, FEWEST_LINES = 3, ROUNDS = 20 };
 
@@ -18,7 +18,7 @@ static const double elongation = 1.5;
 static const double normal_median = 0.6745; /* of |x| of a normal x with SD 1 */
 
 /* Mean of the main stem's lowest points. */
-static bool stem_foot(const plm_organ *stem, double foot[2], double *std_error)
+static void stem_foot(const plm_organ *stem, double foot[2], double *std_error)
 {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < stem->count; i++) {
@@ -38,7 +38,6 @@ static bool stem_foot(const plm_organ *stem, double foot[2], double *std_error)
         for (int k = 0; k < 2; k++) squares += (stem->xyz[i][k] - foot[k]) * (stem->xyz[i][k] - foot[k]);
     }
     *std_error = seen_unevenly * sqrt(squares / count);
-    return true;
 }
 
 /** A petiole seen from above: a line through a place, by its unit normal. */
@@ -89,20 +88,13 @@ static bool meet(const flat_line *line, size_t count, double place[2], double *i
     return true;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static bool meeting_of(flat_line *line, double *off, size_t count, double foot[2], double *std_error)
 {
     double trace = 0, scale = 0, squares = 0, weights = 0;
     if (!meet(line, count, foot, &trace)) return false;
     for (int round = 0; round < ROUNDS; round++) {
         for (size_t i = 0; i < count; i++) off[i] = fabs(offset_of(&line[i], foot));
-        qsort(off, count, sizeof *off, ascending);
-        scale = off[count / 2] / normal_median;
+        scale = plm_order_median(off, count) / normal_median;
         if (!(scale > 0)) break;
         for (size_t i = 0; i < count; i++) line[i].weight = 1 / (1 + pow(offset_of(&line[i], foot) / scale, 2));
         if (!meet(line, count, foot, &trace)) return false;
@@ -116,23 +108,26 @@ static bool meeting_of(flat_line *line, double *off, size_t count, double foot[2
     return true;
 }
 
-static bool petioles_foot(const plm_scene *scene, double foot[2], double *std_error)
+static plm_status petioles_foot(const plm_scene *scene, double foot[2], double *std_error, bool *found,
+                                plm_error *error)
 {
-    plm_error ignored;
-    flat_line *line = plm_alloc(scene->organ_count, sizeof *line, &ignored);
-    double *off = plm_alloc(scene->organ_count, sizeof *off, &ignored);
+    flat_line *line = plm_alloc(scene->organ_count, sizeof *line, error);
+    double *off = plm_alloc(scene->organ_count, sizeof *off, error);
+    const plm_status status = line && off ? PLM_OK : PLM_E_MEMORY;
     size_t count = 0;
-    for (size_t k = 0; line && off && k < scene->organ_count; k++)
+    for (size_t k = 0; status == PLM_OK && k < scene->organ_count; k++)
         if (scene->organ[k].label == PLM_LABEL_PETIOLE) count += line_of(&scene->organ[k], &line[count]);
-    const bool found = count >= FEWEST_LINES && meeting_of(line, off, count, foot, std_error);
+    *found = count >= FEWEST_LINES && meeting_of(line, off, count, foot, std_error);
     plm_free(line);
     plm_free(off);
-    return found;
+    return status;
 }
 
-bool plm_plant_foot(const plm_scene *scene, double foot[2], double *std_error)
+plm_status plm_plant_foot(const plm_scene *scene, double foot[2], double *std_error, bool *found, plm_error *error)
 {
     const plm_organ *stem = plm_scene_organ(scene, PLM_LABEL_STEM, 0);
-    if (stem && stem->count > 0) return stem_foot(stem, foot, std_error);
-    return petioles_foot(scene, foot, std_error);
+    *found = stem && stem->count > 0;
+    if (!*found) return petioles_foot(scene, foot, std_error, found, error);
+    stem_foot(stem, foot, std_error);
+    return PLM_OK;
 }

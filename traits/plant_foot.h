@@ -5,8 +5,8 @@
 #include "traits/scene.h"
 
 /** The place (x, y; metres, offsets from the cloud's origin) where the plant stands, and the standard error of each
- * coordinate: the lower end of the main stem, or of rosettes the place where the lines of the petioles meet. False where
- * there is no stem, and fewer than three petioles. */
-bool plm_plant_foot(const plm_scene *scene, double foot[2], double *std_error);
+ * coordinate: the lower end of the main stem, or of rosettes the place where the lines of the petioles meet. found: false
+ * where there is no stem, and fewer than three petioles. PLM_E_MEMORY. */
+plm_status plm_plant_foot(const plm_scene *scene, double foot[2], double *std_error, bool *found, plm_error *error);
 
 #endif

@@ -155,7 +155,8 @@ static void the_stem_goes_straight_on_where_a_stout_petiole_leaves_it(void **unu
     size_t right = 0, all = 0, petiole = 0;
     for (size_t i = 0; i < POINTS; i++) {
         const float *p = plant.cloud.xyz[i];
-        if (plant.label[i] == PLM_LABEL_STEM && p[2] > 0.065 && p[2] < 0.095) all++, right += found.label[i] == 1;
+        if (plant.label[i] == PLM_LABEL_STEM && p[2] > 0.065 && p[2] < 0.095)
+            all++, right += found.label[i] == PLM_LABEL_STEM;
         petiole += plant.label[i] == PLM_LABEL_PETIOLE && hypot(p[0], p[1]) > 0.01 && found.label[i] == PLM_LABEL_STEM;
     }
     assert_true((double)right > 0.9 * (double)all);

@@ -32,7 +32,7 @@ static void the_rachis_goes_on_past_its_leaflets(void **unused)
     (void)unused;
     static double xyz[POINTS][3];
     const double base[3] = {0};
-    double far[3] = {0.1, 0.042, 0};
+    double far[3] = {0.11, 0.042, 0};
     plm_error error = {0};
     plm_tube_points points = {POINTS, xyz};
     make(xyz, LEAFLETS);

@@ -119,6 +119,7 @@ static void a_few_points_say_how_little_they_know(void **unused)
             const plm_estimate tilt = measurement.value[i].estimate;
             const plm_true_leaf *leaf = nearest_leaf(&plant, measurement.value[i].centroid);
             assert_near(tilt.value, leaf->inclination, 3 * tilt.std_error);
+            assert_true(tilt.std_error < 0.18); /* 10 degrees */
         }
         plm_measurement_free(&measurement);
         plm_virtual_plant_free(&plant);
