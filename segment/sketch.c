@@ -55,6 +55,17 @@ static plm_status classify(plm_sketch *sketch, plm_error *error)
     return smooth(&sketch->graph, sketch->tube, error);
 }
 
+plm_status plm_sketch_link(const plm_sketch *sketch, double edge_cells, plm_graph *graph, plm_error *error)
+{
+    return plm_graph_build((const float(*)[3])sketch->working.xyz, sketch->working.count, NEIGHBOURS,
+                           edge_cells * sketch->working.cell, graph, error);
+}
+
+plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, plm_error *error)
+{
+    return plm_graph_join(graph, sketch->working.cell, JOIN_RADII * sketch->scale.radius, error);
+}
+
 plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, bool try_tubes, plm_sketch *out,
                            plm_error *error)
 {
@@ -69,10 +80,8 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
         cell = fmax(sketch.scale.radius / WORKING_CELLS, sketch.scale.spacing);
         status = plm_thin(base, sketch.base.count, cell, &sketch.working, error);
     }
-    if (status == PLM_OK)
-        status = plm_graph_build((const float(*)[3])sketch.working.xyz, sketch.working.count, NEIGHBOURS,
-                                 EDGE_CELLS * cell, &sketch.graph, error);
-    if (status == PLM_OK) status = plm_graph_join(&sketch.graph, cell, JOIN_RADII * sketch.scale.radius, error);
+    if (status == PLM_OK) status = plm_sketch_link(&sketch, EDGE_CELLS, &sketch.graph, error);
+    if (status == PLM_OK) status = plm_sketch_join(&sketch, &sketch.graph, error);
     if (status == PLM_OK) status = take_arrays(&sketch, error);
     if (status == PLM_OK && sketch.scale.has_tubes) status = classify(&sketch, error);
     for (size_t i = 0; status == PLM_OK && i < sketch.working.count; i++) sketch.is_tube[i] = sketch.tube[i] > 0.5f;

@@ -15,9 +15,7 @@ static const double REACH = 0.08;              /* a leaf reaches so far beyond t
 static const double LEAST_SHARE = 0.005;       /* of the points that a leaf holds at least */
 static const double EDGE_CELLS[] = {2.2, 2.5}; /* longest edge, in cells: tried before that of the sketch */
 static const double LOOSE_SHARE = 0.0025;      /* of the points: a larger piece is a part of a leaf */
-static const double JOIN_RADII = 2.5;          /* as in segment/sketch.c */
-enum { NEIGHBOURS = 10 };
-static const double FOOT = 1.5; /* the base: points so near to the stem's lowest node, in its radii */
+static const double FOOT = 1.5;                /* the base: points so near to the stem's lowest node, in its radii */
 
 /* The largest component but one. */
 static plm_status second_component(const plm_graph *graph, size_t *second, plm_error *error)
@@ -42,20 +40,17 @@ static plm_status second_component(const plm_graph *graph, size_t *second, plm_e
  * which no piece of a leaf comes loose are taken. */
 static plm_status shorten_edges(plm_sketch *sketch, plm_error *error)
 {
-    const double cell = sketch->working.cell;
     const double most = LOOSE_SHARE * (double)sketch->working.count;
     plm_graph graph = {0};
     plm_status status = PLM_OK;
     for (size_t k = 0; k < sizeof EDGE_CELLS / sizeof *EDGE_CELLS; k++) {
         size_t second = 0;
-        status = plm_graph_build((const float(*)[3])sketch->working.xyz, sketch->working.count, NEIGHBOURS,
-                                 EDGE_CELLS[k] * cell, &graph, error);
+        status = plm_sketch_link(sketch, EDGE_CELLS[k], &graph, error);
         if (status == PLM_OK) status = second_component(&graph, &second, error);
         if (status != PLM_OK || (double)second <= most) break;
         plm_graph_free(&graph);
     }
-    if (status == PLM_OK && graph.first)
-        status = plm_graph_join(&graph, cell, JOIN_RADII * sketch->scale.radius, error);
+    if (status == PLM_OK && graph.first) status = plm_sketch_join(sketch, &graph, error);
     if (status == PLM_OK && graph.first) {
         plm_graph_free(&sketch->graph);
         sketch->graph = graph;
