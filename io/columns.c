@@ -160,10 +160,12 @@ plm_role plm_role_of_name(const char *name)
 /* The first column of that name, else the first of that name without CloudCompare's prefix. */
 static const plm_column *column_named(const plm_columns *columns, const char *name)
 {
-    for (size_t i = 0; i < columns->count; i++)
-        if (strcasecmp(columns->column[i].name, name) == 0) return &columns->column[i];
-    for (size_t i = 0; i < columns->count; i++)
-        if (strcasecmp(plain_name(columns->column[i].name), plain_name(name)) == 0) return &columns->column[i];
+    for (int is_plain = 0; is_plain < 2; is_plain++)
+        for (size_t i = 0; i < columns->count; i++) {
+            const plm_column *column = &columns->column[i];
+            const char *mine = is_plain ? plain_name(column->name) : column->name;
+            if (!column->is_list && strcasecmp(mine, is_plain ? plain_name(name) : name) == 0) return column;
+        }
     return NULL;
 }
 
@@ -173,9 +175,9 @@ static const plm_column *column_of(const plm_columns *columns, const char *field
     const plm_column *column = column_named(columns, field);
     if (column) return column;
     unsigned long long number;
-    if (plm_number_whole(field, strlen(field), &number) && number >= 1 && number <= columns->count)
-        return &columns->column[number - 1];
-    return NULL;
+    if (!plm_number_whole(field, strlen(field), &number) || number < 1 || number > columns->count) return NULL;
+    column = &columns->column[number - 1];
+    return column->is_list ? NULL : column;
 }
 
 static void list_fields(const plm_columns *columns, plm_read_report *report)

@@ -31,6 +31,7 @@ size_t plm_scalar_size(plm_scalar type);
 typedef struct plm_column {
     char name[64];
     plm_scalar type;
+    bool is_list;              /* stands for a list: has no numbers, and no field means it */
     bool is_whole;             /* the file says that the numbers are whole */
     bool is_swapped;           /* byte order is not this machine's */
     uint8_t mask;              /* of PLM_UINT8: the bits that count; 0: all */

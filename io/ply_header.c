@@ -91,10 +91,11 @@ static plm_status add_property(plm_ply_header *header, const plm_ply_property *p
     element->property_count++;
     if (!element->is_vertex) return PLM_OK;
     /* A list stands among the columns so that they match the properties; its name is no field. */
-    return plm_columns_add(&header->columns, property->is_list ? "" : name->text, property->is_list ? 0 : name->size,
-                           property->type, error)
-               ? PLM_OK
-               : PLM_E_MEMORY;
+    plm_column *column = plm_columns_add(&header->columns, property->is_list ? "" : name->text,
+                                         property->is_list ? 0 : name->size, property->type, error);
+    if (!column) return PLM_E_MEMORY;
+    column->is_list = property->is_list;
+    return PLM_OK;
 }
 
 static plm_status read_property(plm_ply_header *header, const ply_word *words, size_t count, plm_error *error)

@@ -200,6 +200,29 @@ static void labels_are_read_when_asked_for_in_either_scheme(void **unused)
     assert_non_null(strstr(error.message, "\"class\""));
 }
 
+/* A list has no number a point: by its number or by no name it was taken for labels, and its missing numbers were read. */
+static void lists_are_no_field(void **unused)
+{
+    (void)unused;
+    static const char *const bodies[] = {"ascii", "binary_little_endian"};
+    static const char *const fields[] = {"4", "", "seen", "scalar_"};
+    for (int kind = 0; kind < 2; kind++)
+        for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+            char file[512] = "";
+            int head = snprintf(file, sizeof file,
+                                "ply\nformat %s 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                "property float z\nproperty list uchar uchar seen\nend_header\n%s",
+                                bodies[kind], kind ? "" : "1 2 3 2 4 5\n");
+            if (kind) head += 14; /* three floats of 0, a length of 0, and one byte more */
+            const plm_read_options options = {.label_field = fields[i]};
+            plm_error error = {0};
+            plm_cloud cloud = {0};
+            assert_int_equal(plm_cloud_parse(file, (size_t)head, "a.ply", &options, &cloud, NULL, &error),
+                             PLM_E_ARGUMENT);
+            assert_non_null(strstr(error.message, "no field"));
+        }
+}
+
 static void labelled_clouds_of_the_data_folder_are_read_and_written_the_same(void **unused)
 {
     (void)unused;
@@ -233,6 +256,7 @@ int main(void)
         cmocka_unit_test(rows_that_are_not_finite_are_dropped_counted_and_remembered),
         cmocka_unit_test(gaussians_become_points_with_axes_colour_and_opacity),
         cmocka_unit_test(labels_are_read_when_asked_for_in_either_scheme),
+        cmocka_unit_test(lists_are_no_field),
         cmocka_unit_test(labelled_clouds_of_the_data_folder_are_read_and_written_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
