@@ -379,7 +379,10 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     else
         relabel_simple(w, plm_leaf_sinus(way, origin, along, w->value), origin, along);
     clean_foot(w);
-    return compound ? plm_leaf_broad_tubes(w->sketch, way, error) : PLM_OK;
+    if (!compound) return PLM_OK;
+    const plm_status tidied = plm_leaf_broad_tubes(w->sketch, way, error);
+    if (tidied == PLM_OK) plm_leaf_rachis(w->sketch, way);
+    return tidied;
 }
 
 plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)

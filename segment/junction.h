@@ -40,6 +40,9 @@ const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance);
 /** Calls pieces of tube off the rachis of a compound leaf blade that are broader than it. sketch: way's. */
 plm_status plm_leaf_broad_tubes(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
 
+/** Calls the points of a compound leaf's rachis tube where leaflets sit on it. sketch: way's. */
+void plm_leaf_rachis(plm_sketch *sketch, const plm_leaf_way *way);
+
 /** Lobes that reach back to both sides of the petiole leave a sinus between them that narrows towards the junction; near
  * it the level sets jump over. Where the leaf has one, fits the sinus' edges and gives how far beyond way->junction they
  * meet the petiole, its line there (a point at way->junction and a unit direction); else 0. scratch: 4 floats a point of

@@ -69,6 +69,9 @@ void plm_sketch_mark_stem(plm_sketch *sketch);
 /** Finds the leaves: side groups, habit, leaves, leaflets. */
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error);
 
+/** Gives few points of a blade or petiole that lie apart from it amid a stem or petiole to those. */
+plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error);
+
 void plm_sketch_free(plm_sketch *sketch);
 
 #endif
