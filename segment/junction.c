@@ -90,32 +90,34 @@ static void flood(work *w, double low, double high, const uint32_t *trail, size_
     }
 }
 
-/* Mean and width of the marked points of order[begin, end). */
-static void measure_station(const work *w, size_t begin, size_t end, plm_station *station)
+void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station)
 {
-    const plm_sketch *s = w->sketch;
     double moment[6] = {0}, value[3], vector[3][3], sum[3] = {0}, tubes = 0;
-    *station = (plm_station){0};
-    for (size_t k = begin; k < end; k++) {
-        const uint32_t i = w->way.order[k];
-        if (w->mark[i] != w->stamp) continue;
-        for (int a = 0; a < 3; a++) sum[a] += s->working.xyz[i][a];
-        tubes += s->is_tube[i];
-        station->count++;
+    *station = (plm_station){.count = (uint32_t)count};
+    if (!count) return;
+    for (size_t k = 0; k < count; k++) {
+        for (int a = 0; a < 3; a++) sum[a] += sketch->working.xyz[row[k]][a];
+        tubes += sketch->is_tube[row[k]];
     }
-    if (!station->count) return;
-    for (int a = 0; a < 3; a++) station->middle[a] = sum[a] / station->count;
-    station->tube = tubes / station->count;
-    for (size_t k = begin; k < end; k++) {
-        const uint32_t i = w->way.order[k];
-        if (w->mark[i] != w->stamp) continue;
+    for (int a = 0; a < 3; a++) station->middle[a] = sum[a] / (double)count;
+    station->tube = tubes / (double)count;
+    for (size_t k = 0; k < count; k++) {
         double d[3];
-        for (int a = 0; a < 3; a++) d[a] = s->working.xyz[i][a] - station->middle[a];
+        for (int a = 0; a < 3; a++) d[a] = sketch->working.xyz[row[k]][a] - station->middle[a];
         for (int a = 0, m = 0; a < 3; a++)
-            for (int c = a; c < 3; c++) moment[m++] += d[a] * d[c] / station->count;
+            for (int c = a; c < 3; c++) moment[m++] += d[a] * d[c] / (double)count;
     }
     plm_eigen3(moment, value, vector);
     station->width = sqrt(fmax(value[0], 0));
+}
+
+/* The station of the marked points of order[begin, end). */
+static void measure_marked(work *w, size_t begin, size_t end, plm_station *station)
+{
+    size_t count = 0;
+    for (size_t k = begin; k < end; k++)
+        if (w->mark[w->way.order[k]] == w->stamp) w->source[count++] = w->way.order[k];
+    plm_station_measure(w->sketch, w->source, count, station);
 }
 
 /* A station takes in what is joined, within a wider range of distances, with the way to the leaf's farthest point:
@@ -134,7 +136,7 @@ static void measure_stations(work *w)
         if (end < begin) end = begin;
         while (end < way->count && way->distance[way->order[end]] < high) end++;
         flood(w, low - margin, high + margin, trail, trail_count);
-        measure_station(w, begin, end, &way->station[k]);
+        measure_marked(w, begin, end, &way->station[k]);
     }
 }
 
@@ -151,9 +153,7 @@ static double tube_width(const work *w, size_t first)
     return count ? plm_quantile(w->value, count, 0.4) : 0;
 }
 
-/* The first station of the blade of a simple leaf: the split at which the fewest stations before it are wide and the
- * fewest from it on, up to the widest, are narrow. */
-static size_t only_split(const plm_leaf_way *way, size_t first)
+size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first)
 {
     const double limit = WIDE * way->tube;
     size_t widest = first, best = first;
@@ -368,7 +368,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     way->tube = tube_width(w, first);
     if (!(way->tube > 0)) return PLM_OK;
     const bool compound = s->habit == PLM_HABIT_COMPOUND;
-    const size_t split = compound ? last_split(w, first) : only_split(way, first);
+    const size_t split = compound ? last_split(w, first) : plm_leaf_only_split(way, first);
     if (split <= first || split >= way->station_count) return PLM_OK;
     way->junction = change(way, first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
@@ -379,10 +379,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     else
         relabel_simple(w, plm_leaf_sinus(way, origin, along, w->value), origin, along);
     clean_foot(w);
-    if (!compound) return PLM_OK;
-    const plm_status tidied = plm_leaf_broad_tubes(w->sketch, way, error);
-    if (tidied == PLM_OK) plm_leaf_rachis(w->sketch, way);
-    return tidied;
+    return compound ? plm_leaf_leaflets(w->sketch, way, error) : PLM_OK;
 }
 
 plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)

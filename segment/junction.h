@@ -37,11 +37,15 @@ typedef struct plm_leaf_way {
 /** The station nearest to a distance, or the last before it that has points. */
 const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance);
 
-/** Calls pieces of tube off the rachis of a compound leaf blade that are broader than it. sketch: way's. */
-plm_status plm_leaf_broad_tubes(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
+/** Tells rachis, petiolules and leaflets of a compound leaf apart, up to way->junction. sketch: way's. */
+plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
 
-/** Calls the points of a compound leaf's rachis tube where leaflets sit on it. sketch: way's. */
-void plm_leaf_rachis(plm_sketch *sketch, const plm_leaf_way *way);
+/** The station of count points. */
+void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station);
+
+/** The first station of the only blade: the split at which the fewest stations before it are wide and the fewest from it
+ * on, up to the widest, are narrow. */
+size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first);
 
 /** Lobes that reach back to both sides of the petiole leave a sinus between them that narrows towards the junction; near
  * it the level sets jump over. Where the leaf has one, fits the sinus' edges and gives how far beyond way->junction they
