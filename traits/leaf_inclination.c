@@ -1,5 +1,6 @@
 /* traits/leaf_inclination.c: how a leaf is tilted: as one plane, and facet by facet (seedling paper, Eq. 24). z is zenith
  * once the frame stage has run. */
+#include "cloud/linear.h"
 #include "traits/families.h"
 #include "traits/leaf_midrib.h"
 #include "traits/leaf_surfaces.h"
@@ -21,6 +22,77 @@ static double border_error(const plm_organ *leaf)
     return border_share * leaf->surface.facet_inclination_sd * part * part;
 }
 
+/* Length of a tip that sampling and noise leave out: of virtual maize in noise, whose middle and smallest moments differ by less
+ * than a third, 87 % of 66 leaves are within two standard errors so (56 % without). */
+static const double lost_spacings = 2, lost_noise = 4;
+
+/* Offset along the long axis of the plane. */
+static double along(const plm_plane *plane, const double at[3])
+{
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = at[k] - plane->centroid[k];
+    return plm_dot(d, plane->axis[0]);
+}
+
+/* Area-weighted products of the offsets along the plane's middle axis and across it, of the facets within reach of the lower
+ * and of the upper end of the long axis. */
+static void end_moments(const plm_leaf_surface *surface, const double reach[2], double moment[2])
+{
+    const plm_mesh *mesh = &surface->mesh;
+    const plm_plane *plane = &surface->plane;
+    double area = 0, low = INFINITY, high = -INFINITY;
+    moment[0] = moment[1] = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            const double at = along(plane, mesh->vertex[mesh->triangle[t][i]]);
+            low = fmin(low, at);
+            high = fmax(high, at);
+        }
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const double *p = mesh->vertex[mesh->triangle[t][0]], *q = mesh->vertex[mesh->triangle[t][1]];
+        const double *r = mesh->vertex[mesh->triangle[t][2]];
+        double a[3], b[3], middle[3], across[3];
+        for (int k = 0; k < 3; k++) {
+            a[k] = q[k] - p[k];
+            b[k] = r[k] - p[k];
+            middle[k] = (p[k] + q[k] + r[k]) / 3;
+        }
+        plm_cross(a, b, across);
+        const double part = 0.5 * plm_norm(across), at = along(plane, middle);
+        area += part;
+        for (int k = 0; k < 3; k++) middle[k] -= plane->centroid[k];
+        const double product = part * plm_dot(middle, plane->axis[1]) * plm_dot(middle, plane->normal);
+        if (at - low < reach[0]) moment[0] += product;
+        if (high - at < reach[1]) moment[1] += product;
+    }
+    for (int i = 0; i < 2 && area > 0; i++) moment[i] /= area;
+}
+
+/* What is missing or too much at the ends of a leaf, far from its middle, turns a plane whose two smaller moments are nearly
+ * alike (an arched strap) about its long axis: by up to 45 degrees where they are not told apart. */
+static double ends_error(const plm_organ *leaf)
+{
+    const plm_leaf_surface *surface = &leaf->surface;
+    const plm_plane *plane = &surface->plane;
+    if (!(plane->eigenvalue[1] > 0)) return 0;
+    const double lost = lost_spacings * surface->spacing + lost_noise * surface->noise;
+    double reach[2] = {lost, lost}, moment[2];
+    if (leaf->midrib) {
+        double *base = &reach[along(plane, leaf->midrib->base) > 0];
+        *base = hypot(lost, leaf->midrib->junction_error);
+    }
+    end_moments(surface, reach, moment);
+    const double turn = 0.5 * atan2(2 * hypot(moment[0], moment[1]), plane->eigenvalue[1] - plane->eigenvalue[2]);
+    const double tilt = atan2(hypot(plane->normal[0], plane->normal[1]), fabs(plane->normal[2]));
+    double most = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        double turned[3];
+        for (int k = 0; k < 3; k++) turned[k] = cos(turn) * plane->normal[k] + side * sin(turn) * plane->axis[1][k];
+        most = fmax(most, fabs(atan2(hypot(turned[0], turned[1]), fabs(turned[2])) - tilt));
+    }
+    return most;
+}
+
 plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
                                       plm_error *error)
 {
@@ -29,7 +101,7 @@ plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *l
     const double *normal = leaf->surface.plane.normal;
     /* atan2, not acos: near 0 degrees acos turns a rounding of 1e-16 into 1e-8 rad. */
     out->value = atan2(hypot(normal[0], normal[1]), fabs(normal[2]));
-    out->std_error = hypot(leaf->surface.plane_std_error, border_error(leaf));
+    out->std_error = hypot(hypot(leaf->surface.plane_std_error, border_error(leaf)), ends_error(leaf));
     out->method = "area-weighted plane";
     return PLM_OK;
 }
