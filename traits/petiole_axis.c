@@ -13,10 +13,10 @@
 
 #include <string.h>
 
-enum { FEWEST_POINTS = 12, MOST_POINTS = 4000, FEWEST_TUBE_POINTS = 30, MOST_SPANS = 4, BISECTIONS = 50, RING = 16 };
+enum { FEWEST_POINTS = 12, MOST_POINTS = 4000, FEWEST_TUBE_POINTS = 30, MOST_SPANS = 8, BISECTIONS = 50, RING = 16 };
 
 static const double end_share = 0.02; /* points that stand for an end at the start */
-static const double radii_per_span = 60;
+static const double radii_per_span = 25;
 static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
 static const double noise_along = 0.7;       /* share of the noise that lies along the tube */
 static const double turned_round = 0.4; /* of the length: the base lies so much nearer to the leaf than the far end */
