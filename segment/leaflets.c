@@ -18,11 +18,19 @@ static const double THINNER = 0.75; /* petiolules against the rachis */
 static const double BEND = 0.1;     /* the rachis may leave its line by so much of the way on */
 static const double HOLE = 2;       /* windows without a tube point, where it ends */
 enum {
-    RUN = 3,    /* stations of the shortest narrow stretch */
-    ENDS = 5,   /* stations that give the place of its end */
-    FEWEST = 12 /* points of what hangs on the rachis: less tells no width */
+    RUN = 3,          /* stations of the shortest narrow stretch */
+    ENDS = 5,         /* stations that give the place of its end */
+    MOST_PARTS = 128, /* of a leaf's blades */
+    FEWEST = 12       /* points of what hangs on the rachis: less tells no width */
 };
 enum { ELSEWHERE = -1, OFF = 0 };
+
+/* What of a blade had one number. */
+typedef struct part {
+    int32_t component, leaflet;
+    size_t size;
+    int32_t number;
+} part;
 
 typedef struct work {
     plm_sketch *sketch;
@@ -73,7 +81,6 @@ static void fill(work *w, const double from[3], const double to[3])
         const double forward = plm_dot(d, along);
         if (forward < 0 || forward > length || plm_dot(d, d) - forward * forward > reach * reach) continue;
         s->is_tube[i] = true;
-        s->leaflet[i] = -1;
         w->colour[i] = ELSEWHERE;
     }
 }
@@ -188,36 +195,60 @@ static size_t split_hanging(work *w, uint32_t *row, size_t count)
     return before;
 }
 
-/* The number of the leaflet of most points; next where they have none. */
-static int32_t leaflet_of(const work *w, const uint32_t *row, size_t count, int32_t *next)
-{
-    int32_t best = -1;
-    size_t most = 0;
-    for (size_t k = 0; k < count; k++) { /* Boyer and Moore's vote: enough to tell a majority */
-        const int32_t mine = w->sketch->leaflet[row[k]];
-        if (mine < 0) continue;
-        if (!most) best = mine;
-        most = mine == best ? most + 1 : most - 1;
-    }
-    return best >= 0 ? best : (*next)++;
-}
-
 static void relabel_hanging(work *w, size_t components)
 {
-    plm_sketch *s = w->sketch;
-    int32_t next = 0;
-    for (size_t k = 0; k < w->way->count; k++)
-        if (s->leaflet[w->way->order[k]] >= next) next = s->leaflet[w->way->order[k]] + 1;
     for (size_t c = 0; c < components; c++) {
         uint32_t *row = w->row + w->first[c];
         const size_t count = w->first[c + 1] - w->first[c];
         if (count < FEWEST) continue;
-        const size_t before = split_hanging(w, row, count);
-        const int32_t leaflet = leaflet_of(w, row, count, &next);
-        for (size_t k = before; k < count; k++) {
-            s->is_tube[row[k]] = false;
-            if (s->leaflet[row[k]] < 0) s->leaflet[row[k]] = leaflet;
-        }
+        for (size_t k = split_hanging(w, row, count); k < count; k++) w->sketch->is_tube[row[k]] = false;
+    }
+}
+
+/* The part of a component that had one leaflet's number; count where the list has no room for another. */
+static size_t find_part(part *list, size_t *count, int32_t component, int32_t leaflet)
+{
+    size_t p = 0;
+    while (p < *count && (list[p].component != component || list[p].leaflet != leaflet)) p++;
+    if (p == *count && p < MOST_PARTS) list[(*count)++] = (part){component, leaflet, 0, -1};
+    return p;
+}
+
+/* The largest part of the same component that had a number; the part itself where there is none. */
+static size_t largest_beside(const part *list, size_t count, size_t own)
+{
+    size_t best = own;
+    for (size_t p = 0; p < count; p++)
+        if (list[p].component == list[own].component && list[p].leaflet >= 0 &&
+            (best == own || list[p].size > list[best].size))
+            best = p;
+    return best;
+}
+
+/* Blades that no rachis joins any more are leaflets of their own, as are those that were told apart before though they touch.
+ * Numbers go by the distance from the foot. */
+static void number_leaflets(work *w)
+{
+    plm_sketch *s = w->sketch;
+    const plm_leaf_way *way = w->way;
+    const double cell = s->working.cell;
+    part list[MOST_PARTS];
+    size_t parts = 0;
+    int32_t next = 0;
+    for (size_t k = 0; k < way->count; k++) w->colour[way->order[k]] = s->is_tube[way->order[k]] ? ELSEWHERE : OFF;
+    plm_graph_components(&s->graph, w->colour, w->component, w->stack);
+    for (size_t k = 0; k < way->count; k++) {
+        const uint32_t i = way->order[k];
+        const size_t p = w->component[i] < 0 ? MOST_PARTS : find_part(list, &parts, w->component[i], s->leaflet[i]);
+        if (p < MOST_PARTS) list[p].size++;
+        w->row[k] = (uint32_t)p;
+    }
+    for (size_t k = 0; k < way->count; k++) {
+        size_t p = w->row[k];
+        if (p < MOST_PARTS && list[p].leaflet < 0) p = largest_beside(list, parts, p);
+        const bool large = p < MOST_PARTS && (double)list[p].size * cell * cell >= plm_blade_least(s);
+        if (large && list[p].number < 0) list[p].number = next++;
+        s->leaflet[way->order[k]] = large ? list[p].number : -1;
     }
 }
 
@@ -246,6 +277,7 @@ plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_er
     if (!scratch.failed) {
         list_points(&w, components);
         relabel_hanging(&w, components);
+        number_leaflets(&w);
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

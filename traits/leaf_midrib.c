@@ -13,11 +13,14 @@ enum {
     NODES = 2000, /* of the surface */
     RACHIS_NODES = 600,
     NEIGHBOURS = 12,
-    TERMS = 3,          /* bends of the line: t (1 - t) times Legendre polynomials up to degree 2 */
-    COMPOUND_PARTS = 3, /* connected parts from which on a leaf on a petiole is taken for a compound one */
+    TERMS = 3, /* bends of the line: t (1 - t) times Legendre polynomials up to degree 2 */
+    MOST_LEAFLETS = 64,
+    COMPOUND_PARTS =
+        3, /* connected parts, or leaflets, from which on a leaf on a petiole is taken for a compound one */
     FEWEST_CONTACTS = 4
 };
 
+static const double large_leaflet = 0.05;  /* share of a leaf's points: less is no leaflet that tells a compound one */
 static const double contact_share = 0.005; /* of the nodes: those nearest to the petiole make the junction */
 /* Spacings of nodes around the mean of these contacts outward and aside within which the blade ends: the lobes of a
  * heart-shaped base lie further aside. */
@@ -380,10 +383,22 @@ static double thickness_of(const plm_organ *tube)
     return 2 * sqrt(2 * fmax(value[2], 0));
 }
 
+/* Leaflets told apart by the labels that hold a part of the leaf's points worth the name. */
+static size_t count_large_leaflets(const plm_organ *leaf)
+{
+    size_t points[MOST_LEAFLETS] = {0}, large = 0;
+    for (size_t j = 0; leaf->leaflet && j < leaf->count; j++)
+        if (leaf->leaflet[j] >= 0 && leaf->leaflet[j] < MOST_LEAFLETS) points[leaf->leaflet[j]]++;
+    for (int k = 0; k < MOST_LEAFLETS; k++) large += (double)points[k] > large_leaflet * (double)leaf->count;
+    return large;
+}
+
 plm_status plm_midrib_find(const plm_scene *scene, const plm_organ *leaf, plm_midrib **midrib, plm_error *error)
 {
     const plm_organ *petiole = plm_scene_organ(scene, PLM_LABEL_PETIOLE, leaf->id);
-    const bool compound = petiole && petiole->index && leaf->surface.component_count >= COMPOUND_PARTS;
+    const bool has_parts =
+        leaf->surface.component_count >= COMPOUND_PARTS || count_large_leaflets(leaf) >= COMPOUND_PARTS;
+    const bool compound = petiole && petiole->index && has_parts;
     const plm_organ *holder = petiole && petiole->index ? petiole : nearest_stem(scene, leaf);
     if (!holder) return plm_fail(error, PLM_E_DEGENERATE, "neither a petiole nor a stem tells where the leaf begins");
     plm_midrib *made = plm_alloc_zero(1, sizeof *made, error);
