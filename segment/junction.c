@@ -90,6 +90,11 @@ static void flood(work *w, double low, double high, const uint32_t *trail, size_
     }
 }
 
+double plm_leaf_wide(const plm_leaf_way *way)
+{
+    return WIDE * way->tube;
+}
+
 void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station)
 {
     double moment[6] = {0}, value[3], vector[3][3], sum[3] = {0}, tubes = 0;
@@ -155,7 +160,7 @@ static double tube_width(const work *w, size_t first)
 
 size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first)
 {
-    const double limit = WIDE * way->tube;
+    const double limit = plm_leaf_wide(way);
     size_t widest = first, best = first;
     for (size_t k = first; k < way->station_count; k++)
         if (way->station[k].width > way->station[widest].width) widest = k;
@@ -185,7 +190,7 @@ static double tube_count(const work *w, size_t first)
 static size_t last_split(const work *w, size_t first)
 {
     const plm_leaf_way *way = &w->way;
-    const double limit = WIDE * way->tube, typical = tube_count(w, first);
+    const double limit = plm_leaf_wide(way), typical = tube_count(w, first);
     size_t k = way->station_count;
     while (k > first && way->station[k - 1].width < BLADE * way->tube) k--;
     while (k > first) {
@@ -270,12 +275,12 @@ static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3]
     double sum[3] = {0}, product[3] = {0}, at = 0, square = 0, n = 0;
     size_t narrow = 0, k = 0;
     for (; k < end && narrow < (size_t)WINDOW; k++)
-        narrow = way->station[k].count > 1 && way->station[k].width < WIDE * way->tube ? narrow + 1 : 0;
+        narrow = way->station[k].count > 1 && way->station[k].width < plm_leaf_wide(way) ? narrow + 1 : 0;
     if (narrow < (size_t)WINDOW) return false;
     const size_t first = k - narrow;
     *begin = (double)first * way->step;
     for (k = first; k < end && k < first + wanted; k++) {
-        if (!way->station[k].count || way->station[k].width > WIDE * way->tube) continue;
+        if (!way->station[k].count || way->station[k].width > plm_leaf_wide(way)) continue;
         const double t = (double)k * way->step - *begin;
         n++, at += t, square += t * t;
         for (int a = 0; a < 3; a++) sum[a] += way->station[k].middle[a], product[a] += t * way->station[k].middle[a];
@@ -319,7 +324,7 @@ static void relabel_simple(work *w, double beyond, const double origin[3], const
         const float *p = w->sketch->working.xyz[i];
         if (way->distance[i] < way->junction) {
             const plm_station *station = plm_leaf_station(way, way->distance[i]);
-            if (station->width < WIDE * way->tube)
+            if (station->width < plm_leaf_wide(way))
                 w->sketch->is_tube[i] = gap_squared(p, station->middle) < reach * reach;
             continue;
         }
@@ -345,7 +350,7 @@ static void relabel_compound(work *w)
                 continue;
             s->is_tube[i] = false;
             s->leaflet[i] = s->leaflet[tip];
-        } else if (station->width < WIDE * way->tube &&
+        } else if (station->width < plm_leaf_wide(way) &&
                    gap_squared(s->working.xyz[i], station->middle) < reach * reach) {
             s->is_tube[i] = true;
         }

@@ -7,8 +7,8 @@
 /** Sets is_tube of the points of leaves right by the place of the blade junction: of each leaf that stands on a petiole,
  * the level sets of the distance along the graph from its foot are as narrow as a tube up to the junction, and widen from
  * there. Simple leaves: all before the (only) junction is petiole, all beyond it is blade. Compound leaves: the way to
- * the last leaflet's junction is rachis, all beyond is blade; other leaflets keep what the points said. Leaves whose
- * level sets tell no junction stay as they are. */
+ * the last leaflet's junction is rachis, all beyond is blade; of what hangs on the rachis before, what widens is a leaflet
+ * (leaflets.c). Leaves whose level sets tell no junction stay as they are. */
 plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error);
 
 /* ---- Shared by its files --------------------------------------------------------------------------------------- */
@@ -39,6 +39,9 @@ const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance);
 
 /** Tells rachis, petiolules and leaflets of a compound leaf apart, up to way->junction. sketch: way's. */
 plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
+
+/** Width from which on a station is wider than the tube: 1.6 widths of it. */
+double plm_leaf_wide(const plm_leaf_way *way);
 
 /** The station of count points. */
 void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station);

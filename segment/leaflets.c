@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double WIDE = 1.6;  /* widths of the tube: a station beyond has leaflets in it */
 static const double REACH = 2.2; /* widths of the tube from the rachis' line to its points: the tube's radius is 1.4 */
 static const double GAP = 4;     /* in R: a longer way among leaflets need not be straight */
 static const double THINNER = 0.75; /* petiolules against the rachis */
@@ -44,13 +43,19 @@ typedef struct work {
 
 /* ---- The rachis ------------------------------------------------------------------------------------------------- */
 
+/* Whether no leaflet is in a station. */
+static bool is_narrow(const plm_leaf_way *way, size_t k)
+{
+    return way->station[k].count && way->station[k].width < plm_leaf_wide(way);
+}
+
 /* The next stretch of narrow stations from station k on: [*begin, *end). false: there is none before the last. */
 static bool next_run(const plm_leaf_way *way, size_t k, size_t last, size_t *begin, size_t *end)
 {
     while (k < last) {
-        while (k < last && !(way->station[k].count && way->station[k].width < WIDE * way->tube)) k++;
+        while (k < last && !is_narrow(way, k)) k++;
         *begin = k;
-        while (k < last && way->station[k].count && way->station[k].width < WIDE * way->tube) k++;
+        while (k < last && is_narrow(way, k)) k++;
         *end = k;
         if (*end - *begin >= RUN) return true;
     }
@@ -243,9 +248,10 @@ static void number_leaflets(work *w)
         if (p < MOST_PARTS) list[p].size++;
         w->row[k] = (uint32_t)p;
     }
+    size_t joined[MOST_PARTS];
+    for (size_t p = 0; p < parts; p++) joined[p] = list[p].leaflet < 0 ? largest_beside(list, parts, p) : p;
     for (size_t k = 0; k < way->count; k++) {
-        size_t p = w->row[k];
-        if (p < MOST_PARTS && list[p].leaflet < 0) p = largest_beside(list, parts, p);
+        const size_t p = w->row[k] < MOST_PARTS ? joined[w->row[k]] : MOST_PARTS;
         const bool large = p < MOST_PARTS && (double)list[p].size * cell * cell >= plm_blade_least(s);
         if (large && list[p].number < 0) list[p].number = next++;
         s->leaflet[way->order[k]] = large ? list[p].number : -1;

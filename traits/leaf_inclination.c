@@ -15,6 +15,12 @@ static const double facet_spread_share = 0.05, facet_noise_share = 0.03;
  * product. */
 static const double border_share = 20;
 
+/* Of a normal against zenith. atan2, not acos: near 0 degrees acos turns a rounding of 1e-16 into 1e-8 rad. */
+static double tilt_of(const double normal[3])
+{
+    return atan2(hypot(normal[0], normal[1]), fabs(normal[2]));
+}
+
 static double border_error(const plm_organ *leaf)
 {
     if (!leaf->midrib || !(leaf->midrib->length > 0)) return 0;
@@ -83,12 +89,11 @@ static double ends_error(const plm_organ *leaf)
     }
     end_moments(surface, reach, moment);
     const double turn = 0.5 * atan2(2 * hypot(moment[0], moment[1]), plane->eigenvalue[1] - plane->eigenvalue[2]);
-    const double tilt = atan2(hypot(plane->normal[0], plane->normal[1]), fabs(plane->normal[2]));
     double most = 0;
     for (int side = -1; side <= 1; side += 2) {
         double turned[3];
         for (int k = 0; k < 3; k++) turned[k] = cos(turn) * plane->normal[k] + side * sin(turn) * plane->axis[1][k];
-        most = fmax(most, fabs(atan2(hypot(turned[0], turned[1]), fabs(turned[2])) - tilt));
+        most = fmax(most, fabs(tilt_of(turned) - tilt_of(plane->normal)));
     }
     return most;
 }
@@ -98,9 +103,7 @@ plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *l
 {
     (void)scene, (void)error;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
-    const double *normal = leaf->surface.plane.normal;
-    /* atan2, not acos: near 0 degrees acos turns a rounding of 1e-16 into 1e-8 rad. */
-    out->value = atan2(hypot(normal[0], normal[1]), fabs(normal[2]));
+    out->value = tilt_of(leaf->surface.plane.normal);
     out->std_error = hypot(hypot(leaf->surface.plane_std_error, border_error(leaf)), ends_error(leaf));
     out->method = "area-weighted plane";
     return PLM_OK;
