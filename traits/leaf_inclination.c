@@ -28,8 +28,8 @@ static double border_error(const plm_organ *leaf)
     return border_share * leaf->surface.facet_inclination_sd * part * part;
 }
 
-/* Length of a tip that sampling and noise leave out: of virtual maize in noise, whose middle and smallest moments differ by less
- * than a third, 87 % of 66 leaves are within two standard errors so (56 % without). */
+/* Length of an end that sampling and noise leave out. Of 130 virtual maize leaves in noise whose middle moment is less than twice
+ * the smallest, 0.92 are within two standard errors so (0.68 without). */
 static const double lost_spacings = 2, lost_noise = 4;
 
 /* Offset along the long axis of the plane. */
