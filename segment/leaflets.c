@@ -248,7 +248,7 @@ static void number_leaflets(work *w)
         if (p < MOST_PARTS) list[p].size++;
         w->row[k] = (uint32_t)p;
     }
-    size_t joined[MOST_PARTS];
+    size_t joined[MOST_PARTS] = {0};
     for (size_t p = 0; p < parts; p++) joined[p] = list[p].leaflet < 0 ? largest_beside(list, parts, p) : p;
     for (size_t k = 0; k < way->count; k++) {
         const size_t p = w->row[k] < MOST_PARTS ? joined[w->row[k]] : MOST_PARTS;
