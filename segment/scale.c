@@ -17,8 +17,10 @@ static const double BALL_CELLS = 5;        /* voxels in R: a ball on a sheet hol
 static const double TUBE_LINEARITY = 0.45; /* above: long */
 static const double TUBE_ROUNDNESS = 0.6;  /* above: round, not flat */
 static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the peak: folded straps peak later */
-static const double NOISE_RADII = 10;      /* R in sigmas, at least: a noisier ball is round whatever it holds */
-static const double NOISE_BALL = 5; /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
+static const double THICK_RADII = 2;    /* of the thick tubes at the peak, in R at least: balls on them reach across */
+static const double THICK_GROWTH = 1.1; /* of that radius to the next R, at most: that of straps grows with R */
+static const double NOISE_RADII = 10;   /* R in sigmas, at least: a noisier ball is round whatever it holds */
+static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
 static const double TUBE_THICKNESS = 0.05;            /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;                /* tubes shorter than this share of the size are none, ... */
 static const double TUBE_DOUBTFUL = 0.06;             /* ... but for this the petioles of a rosette */
@@ -119,6 +121,19 @@ static plm_status try_radius(const float (*xyz)[3], size_t count, double radius,
     return status;
 }
 
+/* The smallest R that shows nearly as long tubes as the best one, and shows the thick ones round. */
+static int choose_radius(const trial *series, int trials)
+{
+    int peak = 0, chosen = 0;
+    for (int i = 1; i < trials; i++)
+        if (series[i].ring_length > series[peak].ring_length) peak = i;
+    while (series[chosen].ring_length < PEAK_SHARE * series[peak].ring_length) chosen++;
+    const double thick = series[peak].stem_radius;
+    if (peak + 1 < trials && series[peak + 1].stem_radius < THICK_GROWTH * thick)
+        while (chosen < peak && series[chosen].radius < THICK_RADII * thick) chosen++;
+    return chosen;
+}
+
 plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale, plm_error *error)
 {
     if (count < SMALLEST_COUNT) return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for organs", count);
@@ -134,17 +149,12 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     for (; radius <= last && trials < SERIES_MAXIMUM && status == PLM_OK; radius *= SERIES_RATIO)
         status = try_radius(xyz, count, radius, &series[trials++], error);
     if (status != PLM_OK) return status;
-    double peak = 0, ring_peak = 0;
-    for (int i = 0; i < trials; i++) {
-        peak = fmax(peak, series[i].tube_length);
-        ring_peak = fmax(ring_peak, series[i].ring_length);
-    }
-    int chosen = 0;
-    while (series[chosen].ring_length < PEAK_SHARE * ring_peak) chosen++;
+    double peak = 0;
+    for (int i = 0; i < trials; i++) peak = fmax(peak, series[i].tube_length);
     int wide = 0;
     while (wide + 1 < trials && series[wide].radius < NOISE_BALL * series[wide].flat_noise) wide++;
     out.noise = series[wide].flat_noise;
-    trial best = series[chosen];
+    trial best = series[choose_radius(series, trials)];
     const double least = NOISE_RADII * series[0].flat_noise;
     if (best.radius < least && least < last) status = try_radius(xyz, count, least, &best, error);
     out.radius = best.radius;
