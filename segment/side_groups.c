@@ -1,11 +1,13 @@
 /* segment/side_groups.c: feet are the pieces of a shell around the trunk; every point beyond belongs to the foot that is
- * nearest along the graph. So two leaves that touch far from the stem are still two. */
+ * nearest along the graph. So two leaves that touch far from the stem are still two; their border is moved to the touch. */
 #include "segment/side_groups.h"
 
 #include "cloud/linear.h"
 #include "segment/core.h"
+#include "segment/forked_feet.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
+#include "segment/touch_cut.h"
 
 #include <math.h>
 #include <string.h>
@@ -235,6 +237,19 @@ static plm_status add_loose_groups(work *w, size_t feet, plm_error *error)
     return PLM_OK;
 }
 
+/* Petioles of a rosette that share a foot get one each. */
+static plm_status split_forks(work *w, size_t *feet, plm_error *error)
+{
+    const size_t before = *feet;
+    plm_status status = plm_forked_feet(w->sketch, w->out->distance, w->component, feet, error);
+    if (status != PLM_OK || *feet == before) return status;
+    plm_side_group *grown = plm_realloc(w->out->group, *feet + 1, sizeof *grown, error);
+    if (!grown) return PLM_E_MEMORY;
+    w->out->group = grown;
+    for (size_t f = 0; f < *feet; f++) judge(w, (int32_t)f, &grown[f]);
+    return PLM_OK;
+}
+
 static plm_status find_groups(work *w, plm_error *error)
 {
     size_t feet = 0;
@@ -252,6 +267,8 @@ static plm_status find_groups(work *w, plm_error *error)
         for (size_t f = 0; status == PLM_OK && f < feet; f++)
             if (alive[f]) judge(w, (int32_t)f, &w->out->group[f]);
     }
+    if (status == PLM_OK && !w->sketch->stem.count && w->sketch->scale.has_tubes) status = split_forks(w, &feet, error);
+    if (status == PLM_OK) status = plm_touch_cut(w->sketch, w->sketch->group, w->out->distance, error);
     if (status == PLM_OK) status = add_loose_groups(w, feet, error);
     return status == PLM_OK ? find_blades(w, error) : status;
 }
