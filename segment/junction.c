@@ -30,6 +30,7 @@ typedef struct work {
     const plm_side_groups *groups;
     plm_scratch scratch;
     plm_leaf_way way;
+    size_t first; /* station beyond the foot's reach */
     bool *allowed;
     uint32_t *source, *parent, *mark;
     float *start, *value;
@@ -357,7 +358,8 @@ static void relabel_compound(work *w)
     }
 }
 
-static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
+/* The leaf's stations and the width of its tube; no points in way where there is nothing to tell. */
+static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
     const plm_sketch *s = w->sketch;
@@ -367,15 +369,43 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     way->step = fmax(s->working.cell, farthest / (STATIONS_MOST - 2));
     way->window = WINDOW * way->step;
     way->station_count = (size_t)(farthest / way->step) + 1;
-    const size_t first = (size_t)(FOOT * s->scale.radius / way->step) + 1;
-    if (way->station_count < first + FEWEST_STATIONS) return PLM_OK;
-    measure_stations(w);
-    way->tube = tube_width(w, first);
-    if (!(way->tube > 0)) return PLM_OK;
-    const bool compound = s->habit == PLM_HABIT_COMPOUND;
-    const size_t split = compound ? last_split(w, first) : plm_leaf_only_split(way, first);
-    if (split <= first || split >= way->station_count) return PLM_OK;
-    way->junction = change(way, first, split);
+    w->first = (size_t)(FOOT * s->scale.radius / way->step) + 1;
+    if (way->station_count >= w->first + FEWEST_STATIONS) {
+        measure_stations(w);
+        way->tube = tube_width(w, w->first);
+        if (way->tube > 0) return status;
+    }
+    way->count = 0;
+    return status;
+}
+
+/* Young leaves of a rosette are so small that stations of their blades pass as tube, and widen what is taken for the
+ * petiole: no petiole is wider than is usual on the plant. */
+static plm_status usual_tube(work *w, double *width, plm_error *error)
+{
+    plm_status status = PLM_OK;
+    size_t count = 0;
+    float *seen = plm_alloc(w->sketch->leaf_count + 1, sizeof *seen, error);
+    if (!seen) return PLM_E_MEMORY;
+    for (size_t leaf = 0; leaf < w->sketch->leaf_count && status == PLM_OK; leaf++) {
+        status = measure_leaf(w, (int32_t)leaf, error);
+        if (status == PLM_OK && w->way.count) seen[count++] = (float)w->way.tube;
+    }
+    *width = plm_quantile(seen, count, 0.5);
+    plm_free(seen);
+    return status;
+}
+
+static plm_status set_leaf(work *w, int32_t leaf, double widest, plm_error *error)
+{
+    plm_leaf_way *way = &w->way;
+    const plm_status status = measure_leaf(w, leaf, error);
+    if (status != PLM_OK || !way->count) return status;
+    way->tube = fmin(way->tube, widest);
+    const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
+    const size_t split = compound ? last_split(w, w->first) : plm_leaf_only_split(way, w->first);
+    if (split <= w->first || split >= way->station_count) return PLM_OK;
+    way->junction = change(way, w->first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
         return PLM_OK;
     double origin[3] = {0}, along[3] = {0};
@@ -405,8 +435,10 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    double widest = INFINITY;
+    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE) status = usual_tube(&w, &widest, error);
     for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)
-        status = set_leaf(&w, (int32_t)leaf, error);
+        status = set_leaf(&w, (int32_t)leaf, widest, error);
     plm_scratch_free(&w.scratch, NULL);
     return status;
 }

@@ -11,7 +11,7 @@
 
 static const double STANDS_OUT = 0.5; /* length beyond the fork, in R: less is a bump of a petiole */
 static const double TOGETHER = 2; /* nearer to the core than this, in R, feet are not parted yet: leaves meet there */
-static const double BLADE = 0.7;  /* share of a young leaf's length beyond the fork that is blade, from its tip */
+static const double BLADE = 0.85; /* share of a young leaf's length beyond the fork that is blade, from its tip */
 static const double MOSTLY = 0.5; /* share of an end's points that its blades hold at least, if they are all of it */
 
 /* An end of the plant. */
