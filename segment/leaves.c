@@ -1,6 +1,7 @@
 /* segment/leaves.c: from side groups to leaves: what hangs on one foot is one leaf, its blades are leaflets. */
 #include "cloud/linear.h"
 #include "segment/junction.h"
+#include "segment/rosette_core.h"
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
 #include "segment/strap_leaves.h"
@@ -216,6 +217,8 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
     }
     if (status == PLM_OK && sketch->habit == PLM_HABIT_COMPOUND) status = number_leaflets(sketch, &groups, error);
     if (status == PLM_OK) status = plm_sketch_junctions(sketch, &groups, error);
+    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE)
+        status = plm_rosette_core(sketch, groups.distance, error);
     for (size_t i = 0; status == PLM_OK && i < sketch->working.count; i++)
         if (sketch->habit == PLM_HABIT_STRAP && sketch->leaf[i] >= 0) sketch->is_tube[i] = false;
     plm_side_groups_free(&groups);

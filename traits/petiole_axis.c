@@ -99,10 +99,15 @@ static void ends_without_stem(petiole *p, double base[3], double far[3])
 {
     double one[3], other[3];
     const size_t count = p->points.count;
-    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], p->organ->centroid);
-    mean_of_nearest(p, p->distance, one);
-    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], one);
+    size_t outermost = 0; /* one point: a mean of several, from both ends, would be no end */
+    for (size_t i = 1; i < count; i++)
+        if (plm_distance(p->points.xyz[i], p->organ->centroid) >
+            plm_distance(p->points.xyz[outermost], p->organ->centroid))
+            outermost = i;
+    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], p->points.xyz[outermost]);
     mean_of_nearest(p, p->distance, other);
+    for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], other);
+    mean_of_nearest(p, p->distance, one);
     const bool one_is_base =
         p->leaf ? plm_distance(one, p->leaf->centroid) > plm_distance(other, p->leaf->centroid) : one[2] < other[2];
     memcpy(base, one_is_base ? one : other, 3 * sizeof *base);

@@ -157,6 +157,40 @@ static void a_petiole_ends_where_its_blade_begins(void **unused)
     plm_measurement_free(&plant);
 }
 
+/* The three points farthest from the middle may be strays to three sides, whose mean is the middle: no end of the petiole. */
+static void strays_to_all_sides_are_no_end(void **unused)
+{
+    (void)unused;
+    enum { TUBE = 140, STRAYS = 3, LEAF = 60, ALL = TUBE + STRAYS + LEAF };
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(ALL, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    double xyz[TUBE][3];
+    uint64_t state = 3;
+    const double tilt = plm_radians(50);
+    const test_tube tube = {.base = {-0.005 * sin(tilt), 0, -0.005 * cos(tilt)},
+                            .end = {0.005 * sin(tilt), 0, 0.005 * cos(tilt)},
+                            .radius = {5e-4, 5e-4},
+                            .arc = {0, 2 * PLM_PI}};
+    test_tube_points(&tube, TUBE, &state, xyz);
+    for (int i = 0; i < ALL; i++) {
+        const int s = i - TUBE, b = s - STRAYS;
+        for (int k = 0; k < 3; k++) cloud.xyz[i][k] = i < TUBE ? (float)xyz[i][k] : 0;
+        if (i >= TUBE)
+            cloud.xyz[i][0] = (float)(s < STRAYS ? 0.008 * cos(2.0 * PLM_PI * s / STRAYS) : 0.012 + 1e-4 * b);
+        if (i >= TUBE) cloud.xyz[i][1] = (float)(s < STRAYS ? 0.008 * sin(2.0 * PLM_PI * s / STRAYS) : 1e-3 * (b % 7));
+        if (s >= STRAYS) cloud.xyz[i][2] = 0.008F;
+        cloud.label[i] = s < STRAYS ? PLM_LABEL_PETIOLE : PLM_LABEL_LEAF;
+        cloud.organ[i] = 0;
+    }
+    plm_measurement plant = measure(&cloud);
+    const plm_estimate *angle = find(&plant, "petiole_inclination", 0);
+    assert_int_equal(angle->state, PLM_STATE_OK);
+    assert_near(angle->value, tilt, plm_radians(5));
+    plm_measurement_free(&plant);
+    plm_cloud_free(&cloud);
+}
+
 static void the_order_of_rows_does_not_matter(void **unused)
 {
     (void)unused;
@@ -261,6 +295,7 @@ int main(void)
         cmocka_unit_test(fits_tell_steps_condition_and_end),
         cmocka_unit_test(a_petiole_ends_where_its_blade_begins),
         cmocka_unit_test(noise_is_covered_by_the_standard_errors),
+        cmocka_unit_test(strays_to_all_sides_are_no_end),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
         cmocka_unit_test(labelled_clouds_give_the_true_diameters_and_angles),
     };
