@@ -24,7 +24,7 @@ static const double least_ring = 0.45;  /* share of a ring that must be outside 
 /* Where the labels are our own: what they leave open of the junction along the petiole and of the foot across it, in radii
  * and in SDs of the noise, and of the direction (medians over simulated plants). */
 static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.75;
-static const double own_free_foot_noise = 1.4; /* instead, where no stem tells the foot: rosettes */
+static const double own_free_foot_noise = 1.9; /* instead, where no stem tells the foot: rosettes */
 static const double own_direction = 0.25 * PLM_PI / 180;
 static const double node_turn = 0.4 * PLM_PI / 180; /* of the stem at its nodes, within less than a span of its line */
 static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */
