@@ -71,14 +71,15 @@ static size_t best_cut(const plm_stem_path *stem, double from, double to, double
     return best;
 }
 
-/* The last foot before the end. */
-static double last_foot(const plm_side_groups *groups, double end, double stub)
+/* The last foot before the end, of a leaf with a petiole (least: its tube's least length) or of a tube without blade. What has
+ * none may be leaflets of the petiole that the path ran into. */
+static double last_foot(const plm_side_groups *groups, double end, double stub, double least)
 {
     double last = 0;
     for (size_t g = 0; g < groups->count; g++) {
         const plm_side_group *group = &groups->group[g];
-        if (group->has_foot && group->along < end && (group->blades || group->tube_length >= stub))
-            last = fmax(last, group->along);
+        if (!group->has_foot || !(group->along < end)) continue;
+        if (group->blades ? tube_of_blade(group) >= least : group->tube_length >= stub) last = fmax(last, group->along);
     }
     return last;
 }
@@ -139,17 +140,17 @@ static size_t sharp_turn(const plm_stem_path *stem, double foot, double R)
  * that the path ran into must stand on the straight continuation. */
 static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *done, plm_error *error)
 {
-    const double R = sketch->scale.radius, last = last_foot(&top->groups, top->end, STUB * R);
+    const double R = sketch->scale.radius, least = SESSILE * top->typical,
+                 last = last_foot(&top->groups, top->end, STUB * R, least);
     *done = false;
     if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
-    size_t kink = plm_stem_kink(&sketch->stem, last);
-    bool has_leaves = true;
-    if (kink)
-        has_leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, SESSILE * top->typical) > 1;
-    else
-        kink = sharp_turn(&sketch->stem, last, R);
-    if (!kink) return PLM_OK;
-    const plm_status status = plm_stem_straighten(sketch, kink, has_leaves ? INTERNODE_LEAST * R : 0, done, error);
+    const size_t sharp = sharp_turn(&sketch->stem, last, R), kink = plm_stem_kink(&sketch->stem, last);
+    plm_status status = PLM_OK;
+    if (sharp && (!kink || sharp < kink)) status = plm_stem_straighten(sketch, sharp, INTERNODE_LEAST * R, done, error);
+    if (status == PLM_OK && !*done && kink) {
+        const bool has_leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, least) > 1;
+        status = plm_stem_straighten(sketch, kink, has_leaves ? INTERNODE_LEAST * R : 0, done, error);
+    }
     if (*done) plm_sketch_mark_stem(sketch);
     return status;
 }
