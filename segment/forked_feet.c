@@ -28,7 +28,6 @@ typedef struct piece {
 typedef struct work {
     plm_sketch *sketch;
     const float *distance;
-    int32_t *component;
     size_t feet, pieces;
     plm_scratch scratch;
     bool *allowed;
@@ -111,13 +110,14 @@ static plm_status walk_from(work *w, double low, bool numbered, plm_error *error
     return status;
 }
 
-/* Whether a piece is apart from all petioles of its foot that were found before it. */
+/* Whether a piece is apart from the petioles of its foot that were taken before it. */
 static bool is_apart(const work *w, const piece *own)
 {
     const double least = APART * w->sketch->scale.radius;
     for (const piece *p = w->piece + w->first[own->foot]; p < own; p++) {
         const double d[3] = {p->mean[0] - own->mean[0], p->mean[1] - own->mean[1], p->mean[2] - own->mean[2]};
-        if (p->foot == own->foot && is_petiole(p) && plm_norm(d) < least) return false;
+        const bool is_taken = p->number >= 0 || p == w->piece + w->first[own->foot];
+        if (p->foot == own->foot && is_taken && plm_norm(d) < least) return false;
     }
     return true;
 }
@@ -150,8 +150,7 @@ static bool number_pieces(work *w)
 plm_status plm_forked_feet(plm_sketch *sketch, const float *distance, int32_t *component, size_t *feet,
                            plm_error *error)
 {
-    work w = {
-        .sketch = sketch, .distance = distance, .component = component, .feet = *feet, .scratch = {.error = error}};
+    work w = {.sketch = sketch, .distance = distance, .feet = *feet, .scratch = {.error = error}};
     const double R = sketch->scale.radius;
     plm_status status = start(&w);
     for (double low = FIRST * R; status == PLM_OK && low < LAST * R; low += STEP * R) {

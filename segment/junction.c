@@ -380,7 +380,7 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
 }
 
 /* Young leaves of a rosette are so small that stations of their blades pass as tube, and widen what is taken for the
- * petiole: no petiole is wider than is usual on the plant. */
+ * petiole: none counts as wider than the median of the plant's. */
 static plm_status usual_tube(work *w, double *width, plm_error *error)
 {
     plm_status status = PLM_OK;

@@ -217,7 +217,7 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
     }
     if (status == PLM_OK && sketch->habit == PLM_HABIT_COMPOUND) status = number_leaflets(sketch, &groups, error);
     if (status == PLM_OK) status = plm_sketch_junctions(sketch, &groups, error);
-    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE)
+    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE && !sketch->stem.count)
         status = plm_rosette_core(sketch, groups.distance, error);
     for (size_t i = 0; status == PLM_OK && i < sketch->working.count; i++)
         if (sketch->habit == PLM_HABIT_STRAP && sketch->leaf[i] >= 0) sketch->is_tube[i] = false;

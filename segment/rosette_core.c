@@ -9,9 +9,10 @@
 
 #include <math.h>
 
-/* Distances from the core, in R, between which petioles tell their lines. */
+/* Distances from the core's rim, in R, between which petioles tell their lines. */
 static const double CLEAR = 0.6, CLEAR_END = 2.6;
-static const double BEHIND = 0.5;    /* how far beyond the other side of the core, in R, a line is followed */
+static const double BEHIND =
+    0.5; /* a line is followed so much farther inwards than its clear part is long, in R: to the middle and a little on */
 static const double SHORTEST = 1;    /* length of the clear part, in R: from less no line is prolonged */
 static const double NEARER = 0.5;    /* of the distance from the present line: where lines cross, others are as good */
 static const double MOST_LOST = 0.5; /* of a petiole's points: one that would lose more has a wrong line */

@@ -17,7 +17,8 @@ static const double BALL_CELLS = 5;        /* voxels in R: a ball on a sheet hol
 static const double TUBE_LINEARITY = 0.45; /* above: long */
 static const double TUBE_ROUNDNESS = 0.6;  /* above: round, not flat */
 static const double PEAK_SHARE = 0.75;     /* the smallest R this near to the peak: folded straps peak later */
-static const double THICK_RADII = 2;    /* of the thick tubes at the peak, in R at least: balls on them reach across */
+static const double THICK_RADII =
+    2; /* R in radii of the thick tubes at the peak, at least: balls on them reach across */
 static const double THICK_GROWTH = 1.1; /* of that radius to the next R, at most: that of straps grows with R */
 static const double NOISE_RADII = 10;   /* R in sigmas, at least: a noisier ball is round whatever it holds */
 static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */

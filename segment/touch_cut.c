@@ -170,7 +170,8 @@ static double push(net *n, size_t depth)
     return least;
 }
 
-/* The maximum flow, or something above limit. Afterwards level[] is not negative on the source's side of the minimum cut. */
+/* The maximum flow, or something above limit. Where it is not above, level[] is not negative
+ * then on the source's side of the minimum cut. */
 static double find_flow(net *n, double limit)
 {
     double flow = 0;
@@ -194,7 +195,7 @@ static bool is_blade(const plm_sketch *sketch, const int32_t *owner, uint32_t i)
     return owner[i] >= 0 && !sketch->is_tube[i] && !sketch->is_stem[i];
 }
 
-/* Every pair of organs that are neighbours within blades; list: room for an entry an edge. */
+/* Every pair of organs that are neighbours within blades, as they are before any border is moved; list: room for an entry an edge. */
 static size_t find_borders(const net *n, const float *distance, organ_border *list)
 {
     const plm_graph *graph = &n->sketch->graph;
@@ -233,10 +234,11 @@ static neck find_neck(net *n, const organ_border *border, int giver, const float
     if (!rooted) return (neck){INFINITY, false};
     fill(n);
     const double flow = find_flow(n, limit);
+    if (flow > limit) return (neck){INFINITY, false};
     size_t blade = 0;
     for (size_t k = 0; k < n->nodes; k++) blade += n->level[k] >= 0 && !s->is_tube[n->point[k]];
     const double area = (double)blade * s->working.cell * s->working.cell;
-    return (neck){flow > limit ? INFINITY : flow, !(area < plm_blade_least(s))};
+    return (neck){flow, !(area < plm_blade_least(s))};
 }
 
 /* The petiole of the other leaf is a neck too: so rather one behind which the giver keeps a blade. On a stem no other will
@@ -258,7 +260,7 @@ static void move_border(net *n, const organ_border *border, const float *distanc
     const neck *best = is_better(n->sketch, &first, &none) ? &first : &none;
     if (is_better(n->sketch, &second, best)) best = &second;
     if (best == &none) return;
-    if (best == &first) find_neck(n, border, 0, distance, limit);
+    if (best == &first) find_neck(n, border, 0, distance, limit); /* level[] is the second one's */
     for (size_t k = 0; k < n->nodes; k++)
         if (n->level[k] < 0) n->owner[n->point[k]] = border->organ[best == &first];
 }
