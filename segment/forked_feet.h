@@ -6,7 +6,7 @@
 
 /** For plants without a stem: splits feet that fork into several petioles with blades, also where these blades touch.
  * distance: of each working point from the trunk along the graph; component: the foot of the points of its shell, -1 for
- * others, changed with sketch->group; feet: their number, grows. */
+ * others, changed with sketch->group; feet: their number, grows. PLM_E_MEMORY only. */
 plm_status plm_forked_feet(plm_sketch *sketch, const float *distance, int32_t *component, size_t *feet,
                            plm_error *error);
 

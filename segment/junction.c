@@ -6,6 +6,7 @@
 #include "segment/junction.h"
 
 #include "cloud/linear.h"
+#include "segment/line_fit.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -273,7 +274,7 @@ static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3]
 {
     const size_t end = (size_t)(way->junction / way->step),
                  wanted = (size_t)(FOOT_LINE * way->sketch->scale.radius / way->step);
-    double sum[3] = {0}, product[3] = {0}, at = 0, square = 0, n = 0;
+    plm_line_sums sums = {0};
     size_t narrow = 0, k = 0;
     for (; k < end && narrow < (size_t)WINDOW; k++)
         narrow = way->station[k].count > 1 && way->station[k].width < plm_leaf_wide(way) ? narrow + 1 : 0;
@@ -282,17 +283,9 @@ static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3]
     *begin = (double)first * way->step;
     for (k = first; k < end && k < first + wanted; k++) {
         if (!way->station[k].count || way->station[k].width > plm_leaf_wide(way)) continue;
-        const double t = (double)k * way->step - *begin;
-        n++, at += t, square += t * t;
-        for (int a = 0; a < 3; a++) sum[a] += way->station[k].middle[a], product[a] += t * way->station[k].middle[a];
+        plm_line_add(&sums, (double)k * way->step - *begin, way->station[k].middle);
     }
-    const double spread = square - at * at / n;
-    if (n < 4 || !(spread > 0)) return false;
-    for (int a = 0; a < 3; a++) {
-        along[a] = (product[a] - at * sum[a] / n) / spread;
-        origin[a] = (sum[a] - at * along[a]) / n;
-    }
-    return plm_normalise(along) > 0;
+    return plm_line_fit(&sums, origin, along);
 }
 
 /* Points before the first clear station that are off the petiole's line are the stem's. */

@@ -3,7 +3,7 @@
  * millimetres is seen in any noise, the last one is not. */
 #include "segment/junction.h"
 
-#include "cloud/linear.h"
+#include "segment/line_fit.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,23 +31,10 @@ static bool last_piece(const plm_leaf_way *way, double origin[3], double along[3
     if (end > 1) end -= 1; /* a window that holds nothing of the blade */
     const size_t length = (size_t)(LINE * R / way->step);
     begin = end > length ? end - length : 0;
-    double sum[3] = {0}, moment[2][3] = {{0}}, at = 0, square = 0, n = 0;
-    for (size_t k = begin; k < end; k++) {
-        if (!way->station[k].count) continue;
-        const double t = (double)k * way->step - way->junction;
-        n++, at += t, square += t * t;
-        for (int a = 0; a < 3; a++) {
-            sum[a] += way->station[k].middle[a];
-            moment[0][a] += t * way->station[k].middle[a];
-        }
-    }
-    const double spread = square - at * at / n;
-    if (n < 4 || !(spread > 0)) return false;
-    for (int a = 0; a < 3; a++) {
-        along[a] = (moment[0][a] - at * sum[a] / n) / spread;
-        origin[a] = (sum[a] - at * along[a]) / n;
-    }
-    return plm_normalise(along) > 0;
+    plm_line_sums sums = {0};
+    for (size_t k = begin; k < end; k++)
+        if (way->station[k].count) plm_line_add(&sums, (double)k * way->step - way->junction, way->station[k].middle);
+    return plm_line_fit(&sums, origin, along);
 }
 
 /* Normal of the blade around the junction, at right angles to the petiole. */

@@ -4,56 +4,41 @@
  * inwards, passes far nearer. */
 #include "segment/rosette_core.h"
 
-#include "cloud/linear.h"
+#include "segment/line_fit.h"
 #include "segment/scratch.h"
 
 #include <math.h>
 
 /* Distances from the core's rim, in R, between which petioles tell their lines. */
 static const double CLEAR = 0.6, CLEAR_END = 2.6;
-static const double BEHIND =
-    0.5; /* a line is followed so much farther inwards than its clear part is long, in R: to the middle and a little on */
+static const double BEHIND = 1.5;    /* a line is followed so far inwards of the rim, in R: a little past the middle */
 static const double SHORTEST = 1;    /* length of the clear part, in R: from less no line is prolonged */
 static const double NEARER = 0.5;    /* of the distance from the present line: where lines cross, others are as good */
 static const double MOST_LOST = 0.5; /* of a petiole's points: one that would lose more has a wrong line */
 enum { FEWEST = 8 };
 
-/* The line of a petiole, from a clear place towards its tip. */
+/* The line of a petiole, from the core's rim towards its tip. */
 typedef struct core_line {
-    double origin[3], along[3];
-    double sums[9];           /* n, distance, its square, xyz, xyz times distance */
-    double nearest, farthest; /* distances from the core */
+    plm_line_sums sums;
+    double nearest, farthest; /* distances from the rim */
     size_t points, lost;      /* of the petiole */
     bool known;
+    double origin[3], along[3];
 } core_line;
 
 static void add(core_line *line, const float xyz[3], double distance, double R)
 {
     line->points++;
     if (!(distance >= CLEAR * R && distance < CLEAR_END * R)) return;
-    line->nearest = line->sums[0] > 0 ? fmin(line->nearest, distance) : distance;
+    line->nearest = line->sums.n > 0 ? fmin(line->nearest, distance) : distance;
     line->farthest = fmax(line->farthest, distance);
-    line->sums[0]++;
-    line->sums[1] += distance;
-    line->sums[2] += distance * distance;
-    for (int k = 0; k < 3; k++) {
-        line->sums[3 + k] += xyz[k];
-        line->sums[6 + k] += xyz[k] * distance;
-    }
+    plm_line_add(&line->sums, distance, (double[3]){xyz[0], xyz[1], xyz[2]});
 }
 
-/* Regression of the place on the distance from the core. */
 static void fit(core_line *line, double least)
 {
-    const double *s = line->sums, n = s[0];
-    if (n < FEWEST || line->farthest - line->nearest < least) return;
-    const double spread = s[2] - s[1] * s[1] / n;
-    if (!(spread > 0)) return;
-    for (int k = 0; k < 3; k++) {
-        line->origin[k] = s[3 + k] / n;
-        line->along[k] = (s[6 + k] - s[1] * s[3 + k] / n) / spread;
-    }
-    line->known = plm_normalise(line->along) > 0;
+    if (line->sums.n < FEWEST || line->farthest - line->nearest < least) return;
+    line->known = plm_line_fit(&line->sums, line->origin, line->along);
 }
 
 /* Distance of a point from the line; INFINITY too far beyond the core. */
@@ -71,7 +56,7 @@ static int32_t nearest_line(const plm_sketch *sketch, const core_line *line, uin
 {
     const int32_t own = sketch->leaf[point];
     const float *xyz = sketch->working.xyz[point];
-    const double behind = (CLEAR_END + BEHIND) * sketch->scale.radius;
+    const double behind = BEHIND * sketch->scale.radius;
     int32_t best = own;
     double least = NEARER * off_line(&line[own], xyz, INFINITY);
     for (size_t k = 0; k < sketch->leaf_count; k++) {
@@ -88,19 +73,21 @@ plm_status plm_rosette_core(plm_sketch *sketch, const float *distance, plm_error
     plm_scratch scratch = {.error = error};
     core_line *line = plm_scratch_take(&scratch, sketch->leaf_count + 1, sizeof *line);
     int32_t *next = plm_scratch_take(&scratch, count, sizeof *next);
-    for (size_t i = 0; !scratch.failed && i < count; i++)
-        if (sketch->leaf[i] >= 0 && sketch->is_tube[i])
-            add(&line[sketch->leaf[i]], sketch->working.xyz[i], distance[i], R);
-    for (size_t k = 0; !scratch.failed && k < sketch->leaf_count; k++) fit(&line[k], SHORTEST * R);
-    for (uint32_t i = 0; !scratch.failed && i < count; i++) {
-        const int32_t own = next[i] = sketch->leaf[i];
-        if (own < 0 || !sketch->is_tube[i] || !(distance[i] < clear) || !line[own].known) continue;
-        next[i] = nearest_line(sketch, line, i);
-        line[own].lost += next[i] != own;
-    }
-    for (size_t i = 0; !scratch.failed && i < count; i++) {
-        const core_line *own = next[i] >= 0 ? &line[sketch->leaf[i]] : NULL;
-        if (own && (double)own->lost <= MOST_LOST * (double)own->points) sketch->leaf[i] = next[i];
+    if (!scratch.failed) {
+        for (size_t i = 0; i < count; i++)
+            if (sketch->leaf[i] >= 0 && sketch->is_tube[i])
+                add(&line[sketch->leaf[i]], sketch->working.xyz[i], distance[i], R);
+        for (size_t k = 0; k < sketch->leaf_count; k++) fit(&line[k], SHORTEST * R);
+        for (uint32_t i = 0; i < count; i++) {
+            const int32_t own = next[i] = sketch->leaf[i];
+            if (own < 0 || !sketch->is_tube[i] || !(distance[i] < clear) || !line[own].known) continue;
+            next[i] = nearest_line(sketch, line, i);
+            line[own].lost += next[i] != own;
+        }
+        for (size_t i = 0; i < count; i++) {
+            const core_line *own = next[i] >= 0 ? &line[sketch->leaf[i]] : NULL;
+            if (own && (double)own->lost <= MOST_LOST * (double)own->points) sketch->leaf[i] = next[i];
+        }
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

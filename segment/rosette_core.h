@@ -5,7 +5,7 @@
 #include "segment/sketch.h"
 
 /** Gives the tube points at a rosette's core to the petioles whose lines lead there. distance: of each working point from the
- * rim of the core along the graph, 0 within. Writes sketch->leaf. */
+ * rim of the core along the graph, 0 within. Writes sketch->leaf. PLM_E_MEMORY only. */
 plm_status plm_rosette_core(plm_sketch *sketch, const float *distance, plm_error *error);
 
 #endif

@@ -145,11 +145,11 @@ static void judge(work *w, int32_t foot, plm_side_group *group)
     const plm_sketch *s = w->sketch;
     const double reach = FOOT_REACH * s->scale.radius;
     size_t members = 0, tubes = 0, rim = 0, radii = 0;
-    double along = 0, lowest = 0; /* lowest: place of the point nearest to the trunk, where a fork has taken the rim */
+    double along = 0, inmost = 0; /* inmost: of the point nearest to the trunk, where a fork has taken the rim */
     float nearest = INFINITY;
     for (size_t i = 0; i < s->working.count; i++) {
         if (s->group[i] != foot) continue;
-        if (w->out->distance[i] < nearest) nearest = w->out->distance[i], lowest = s->working.xyz[i][2];
+        if (w->out->distance[i] < nearest) nearest = w->out->distance[i], inmost = s->working.xyz[i][2];
         /* Nearer to the trunk than R, the ball that the radius is taken from holds points of the trunk. */
         if (s->is_tube[i] && w->out->distance[i] > s->scale.radius) w->value[radii++] = s->point[i].radius;
         if (!(w->out->distance[i] < reach)) continue;
@@ -162,7 +162,7 @@ static void judge(work *w, int32_t foot, plm_side_group *group)
         rim++;
     }
     *group = (plm_side_group){.has_foot = true,
-                              .along = rim ? along / (double)rim : lowest,
+                              .along = rim ? along / (double)rim : inmost,
                               .tube_share = members ? (double)tubes / (double)members : 0,
                               .tube_radius = plm_quantile(w->value, radii, 0.5)};
 }

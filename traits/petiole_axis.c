@@ -100,10 +100,9 @@ static void ends_without_stem(petiole *p, double base[3], double far[3])
     double one[3], other[3];
     const size_t count = p->points.count;
     size_t outermost = 0; /* one point: a mean of several, from both ends, would be no end */
+    for (size_t i = 0; i < count; i++) p->distance[i] = plm_distance(p->points.xyz[i], p->organ->centroid);
     for (size_t i = 1; i < count; i++)
-        if (plm_distance(p->points.xyz[i], p->organ->centroid) >
-            plm_distance(p->points.xyz[outermost], p->organ->centroid))
-            outermost = i;
+        if (p->distance[i] > p->distance[outermost]) outermost = i;
     for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], p->points.xyz[outermost]);
     mean_of_nearest(p, p->distance, other);
     for (size_t i = 0; i < count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], other);
