@@ -5,7 +5,7 @@
 #include "segment/junction.h"
 #include "segment/segment.h"
 #include "segment/sketch.h"
-#include "simulate/simulate.h"
+#include "support/virtual_plant.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -244,33 +244,22 @@ static void young_leaves_of_a_virtual_rosette_keep_their_blades(void **unused)
 {
     (void)unused;
     enum { LEAVES_MOST = 64, FEW = 320 };
-    plm_error error = {0};
-    plm_virtual_plant plant;
-    plm_scan scan;
-    plm_segmentation found;
     size_t points[LEAVES_MOST] = {0}, all = 0, right = 0;
     const plm_scan_options options = {
         .scanner = PLM_SCANNER_RGBD, .seed = 302, .points = 45000, .noise = 5e-4, .views = 12};
-    assert_ok(plm_plant_grow("arabidopsis", &(plm_plant_options){.seed = 302}, &plant, &error));
-    assert_true(plant.leaf_count <= LEAVES_MOST);
-    assert_ok(plm_scan_plant(&plant, &options, &scan, &error));
-    bool *keep = calloc(scan.cloud.count, sizeof *keep);
-    assert_non_null(keep);
-    assert_ok(plm_clean(&scan.cloud, NULL, keep, NULL, &error));
-    assert_ok(plm_segment(&scan.cloud, NULL, keep, NULL, &found, &error));
-    for (size_t i = 0; i < scan.cloud.count; i++)
-        if (scan.cloud.label[i] == PLM_LABEL_LEAF) points[scan.cloud.organ[i]]++;
-    for (size_t i = 0; i < scan.cloud.count; i++) {
-        if (scan.cloud.label[i] != PLM_LABEL_LEAF || points[scan.cloud.organ[i]] > FEW) continue;
+    virtual_plant made = virtual_plant_make("arabidopsis", 0, &options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    assert_true(made.plant.leaf_count <= LEAVES_MOST);
+    for (size_t i = 0; i < cloud->count; i++)
+        if (cloud->label[i] == PLM_LABEL_LEAF) points[cloud->organ[i]]++;
+    for (size_t i = 0; i < cloud->count; i++) {
+        if (cloud->label[i] != PLM_LABEL_LEAF || points[cloud->organ[i]] > FEW) continue;
         all++;
-        right += found.label[i] == PLM_LABEL_LEAF;
+        right += made.found.label[i] == PLM_LABEL_LEAF;
     }
     print_message("%zu of %zu points\n", right, all);
     assert_true(all > 400 && (double)right >= 0.91 * (double)all);
-    free(keep);
-    plm_segmentation_free(&found);
-    plm_scan_free(&scan);
-    plm_virtual_plant_free(&plant);
+    virtual_plant_free(&made);
 }
 
 int main(void)

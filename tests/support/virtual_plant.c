@@ -1,0 +1,25 @@
+#include "support/virtual_plant.h"
+
+#include "support/test.h"
+
+virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_scan_options *options)
+{
+    plm_error error = {0};
+    virtual_plant made;
+    const plm_plant_options grown = {.seed = options->seed, .resolution = resolution};
+    assert_ok(plm_plant_grow(kind, &grown, &made.plant, &error));
+    assert_ok(plm_scan_plant(&made.plant, options, &made.scan, &error));
+    bool *keep = calloc(made.scan.cloud.count, sizeof *keep);
+    assert_non_null(keep);
+    assert_ok(plm_clean(&made.scan.cloud, NULL, keep, NULL, &error));
+    assert_ok(plm_segment(&made.scan.cloud, NULL, keep, NULL, &made.found, &error));
+    free(keep);
+    return made;
+}
+
+void virtual_plant_free(virtual_plant *made)
+{
+    plm_segmentation_free(&made->found);
+    plm_scan_free(&made->scan);
+    plm_virtual_plant_free(&made->plant);
+}

@@ -1,0 +1,20 @@
+/* tests/support/virtual_plant.h: a virtual plant, its scan, and what segmentation makes of that. */
+#ifndef PLANTIMETER_TESTS_VIRTUAL_PLANT_H
+#define PLANTIMETER_TESTS_VIRTUAL_PLANT_H
+
+#include "segment/segment.h"
+#include "simulate/simulate.h"
+
+typedef struct virtual_plant {
+    plm_virtual_plant plant;
+    plm_scan scan;
+    plm_segmentation found;
+} virtual_plant;
+
+/** Grows a plant of the seed of the options, scans it, takes floaters and ghosts off, and finds its organs; a failure is one of
+ * the test. resolution: as plm_plant_options. Freed by virtual_plant_free. */
+virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_scan_options *options);
+
+void virtual_plant_free(virtual_plant *made);
+
+#endif
