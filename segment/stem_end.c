@@ -106,6 +106,20 @@ typedef struct stem_top {
     double typical; /* median tube length of the other leaves' blades */
 } stem_top;
 
+/* Whether what stands on the way beyond a place begins with a leaf that has a petiole of its own: then the way is the stem there.
+ * A petiole bears leaflets first. */
+static bool is_stem_beyond(const stem_top *top, double place, double least)
+{
+    double petioled = INFINITY, sessile = INFINITY;
+    for (size_t g = 0; g < top->groups.count; g++) {
+        const plm_side_group *group = &top->groups.group[g];
+        if (!group->has_foot || !group->blades || group->along <= place) continue;
+        double *nearest = tube_of_blade(group) >= least ? &petioled : &sessile;
+        *nearest = fmin(*nearest, fmin(group->along, top->end)); /* at the end there is no order */
+    }
+    return isfinite(petioled) && petioled <= sessile;
+}
+
 static plm_status find_top(plm_sketch *sketch, stem_top *top, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
@@ -146,7 +160,8 @@ static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *d
     if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
     const size_t sharp = sharp_turn(&sketch->stem, last, R), kink = plm_stem_kink(&sketch->stem, last);
     plm_status status = PLM_OK;
-    if (sharp && (!kink || sharp < kink)) status = plm_stem_straighten(sketch, sharp, INTERNODE_LEAST * R, done, error);
+    if (sharp && (!kink || sharp < kink) && !is_stem_beyond(top, sketch->stem.along[sharp] + SHARP_REACH * R, least))
+        status = plm_stem_straighten(sketch, sharp, INTERNODE_LEAST * R, done, error);
     if (status == PLM_OK && !*done && kink) {
         const bool has_leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, least) > 1;
         status = plm_stem_straighten(sketch, kink, has_leaves ? INTERNODE_LEAST * R : 0, done, error);
