@@ -160,7 +160,7 @@ static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *d
     if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
     const size_t sharp = sharp_turn(&sketch->stem, last, R), kink = plm_stem_kink(&sketch->stem, last);
     plm_status status = PLM_OK;
-    if (sharp && (!kink || sharp < kink) && !is_stem_beyond(top, sketch->stem.along[sharp] + SHARP_REACH * R, least))
+    if (sharp && (!kink || (sharp < kink && !is_stem_beyond(top, sketch->stem.along[sharp] + SHARP_REACH * R, least))))
         status = plm_stem_straighten(sketch, sharp, INTERNODE_LEAST * R, done, error);
     if (status == PLM_OK && !*done && kink) {
         const bool has_leaves = leaves_beyond(&top->groups, sketch->stem.along[kink] + 0.5 * R, least) > 1;
