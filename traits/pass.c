@@ -6,6 +6,7 @@
 #include "traits/axis.h"
 #include "traits/evaluate.h"
 #include "traits/plan.h"
+#include "traits/rosette_base.h"
 
 #include <math.h>
 #include <omp.h>
@@ -275,14 +276,28 @@ static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
     return status == PLM_E_TIME ? PLM_OK : status;
 }
 
-/* Behind the frame stage the stages see the points in canonical order, where any of them looks at neighbours. */
+/* Whether the plant may be a rosette is seen only now: heights then need axes. Where there is no time for these, they are told
+ * without. */
+static void widen_plan(plant_job *job)
+{
+    plm_plan *plan = &job->draft->plan;
+    if (plan->needs & PLM_NEEDS_BASE && plm_may_be_rosette(&job->scene))
+        plm_plan_widen(plan, PLM_NEEDS_AXIS, plm_cloud_attributes(job->cloud), job->options,
+                       "for the base of a low plant, which its leaves may hide");
+}
+
+/* Behind the frame stage the stages see the points in canonical order, where any of them looks or may look at neighbours. */
 static plm_status run_stages(plant_job *job, plm_error *error)
 {
+    const plm_plan *plan = &job->draft->plan;
     plm_status status = run_stage(job, PLM_STAGE_FRAME, error);
-    if (status == PLM_OK && job->draft->plan.stage[PLM_STAGE_INDEX].runs)
+    if (status == PLM_OK && (plan->stage[PLM_STAGE_INDEX].runs || plan->needs & PLM_NEEDS_BASE))
         status = plm_work_order(&job->pass->work, error);
     for (int id = PLM_STAGE_GROUND; id < PLM_STAGE_COUNT && status == PLM_OK; id++) {
-        if (id == PLM_STAGE_INDEX) status = gather_plant(job, error);
+        if (id == PLM_STAGE_INDEX) {
+            status = gather_plant(job, error);
+            widen_plan(job);
+        }
         if (status == PLM_OK) status = run_stage(job, (plm_stage_id)id, error);
     }
     return status;

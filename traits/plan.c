@@ -153,6 +153,20 @@ static void leave_out_needless(plm_plan *plan, unsigned attributes, const plm_me
         plm_plan_leave_out(plan, PLM_STAGE_GROUND, "left out: the options say that there is no ground");
 }
 
+void plm_plan_widen(plm_plan *plan, unsigned needs, unsigned attributes, const plm_measure_options *options,
+                    const char *why)
+{
+    const unsigned added = plm_needs_closure(needs) & ~plan->needs;
+    plan->needs |= added;
+    for (int id = 0; id < PLM_STAGE_COUNT; id++) {
+        plm_stage *stage = &plan->stage[id];
+        if (stage->runs || !(added & stages[id].needs)) continue;
+        stage->runs = true;
+        snprintf(stage->why, sizeof stage->why, "%s", why);
+    }
+    leave_out_needless(plan, attributes, options);
+}
+
 unsigned plm_stage_needs(plm_stage_id id)
 {
     return stages[id].needs;

@@ -34,6 +34,10 @@ plm_status plm_plan_of(const plm_measure_options *options, const bool *chosen, u
 unsigned plm_needs_closure(unsigned needs);
 unsigned plm_stage_needs(plm_stage_id stage);
 
+/** Makes the stages run that needs name and that were left out as nobody asked for them, with the reason why. */
+void plm_plan_widen(plm_plan *plan, unsigned needs, unsigned attributes, const plm_measure_options *options,
+                    const char *why);
+
 /** The most points that the stages look at: options->points, or by effort; 0: all. */
 size_t plm_point_budget(const plm_measure_options *options);
 

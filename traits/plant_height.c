@@ -4,6 +4,7 @@
 #include "cloud/voxel.h"
 #include "traits/extreme.h"
 #include "traits/families.h"
+#include "traits/rosette_base.h"
 #include "traits/scene.h"
 
 #include <math.h>
@@ -21,10 +22,11 @@ static plm_status find_top(const plm_scene *scene, plm_extreme *top, plm_error *
  * cameras, which are noisier at a stem's sides than on leaves that many views see. */
 static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, plm_error *error)
 {
-    const plm_status status = find_top(scene, top, error);
+    plm_status status = find_top(scene, top, error);
     if (status != PLM_OK) return status;
     const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise};
-    return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
+    status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
+    return status == PLM_OK ? plm_rosette_base(scene, base, error) : status;
 }
 
 plm_status plm_trait_plant_height(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)

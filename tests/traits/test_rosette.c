@@ -71,6 +71,30 @@ static void the_foot_is_as_low_as_it_was_seen(void **unused)
     }
 }
 
+/* From a dome the underside of the petioles where they meet is not seen: the lowest point that is lies 0.35 mm higher. */
+static void petioles_tell_the_base_that_they_hide(void **unused)
+{
+    (void)unused;
+    for (uint64_t seed = 303; seed <= 305; seed += 2) {
+        const plm_scan_options dome = {.scanner = PLM_SCANNER_DOME, .seed = seed, .points = 60000};
+        plm_estimate height[2];
+        for (int k = 0; k < 2; k++) { /* alone, and beside what needs organs anyway */
+            plm_virtual_plant plant;
+            plm_measurement measurement =
+                measure(k ? "plant_height,leaf_count" : "plant_height", seed, &dome, false, &plant);
+            const double built = plant.whole.highest - plant.whole.lowest;
+            assert_int_equal(measurement.value_count, k + 1);
+            assert_string_equal(measurement.value[k].trait->name, "plant_height"); /* behind leaf_count */
+            height[k] = measurement.value[k].estimate;
+            assert_near(height[k].value, built, 0.12e-3);
+            assert_near(height[k].value, built, 2 * height[k].std_error);
+            plm_measurement_free(&measurement);
+            plm_virtual_plant_free(&plant);
+        }
+        assert_true(height[0].value == height[1].value && height[0].std_error == height[1].std_error);
+    }
+}
+
 /* Petioles hang over the soil but do not stand in it: what lies below them is no foot of a stem. */
 static void soil_under_a_rosette_is_no_foot(void **unused)
 {
@@ -130,6 +154,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_foot_is_as_low_as_it_was_seen),
+        cmocka_unit_test(petioles_tell_the_base_that_they_hide),
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),
         cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
         cmocka_unit_test(a_few_points_say_how_little_they_know),

@@ -1,0 +1,156 @@
+/* traits/rosette_base.c: the lowest surface of a rosette is the underside of its lowest petiole where all of them meet, which
+ * the others hide. Each petiole says where that would be: its line prolonged to the plant's foot, less its radius. The least of
+ * unsure values is too low: so each is drawn towards their mean as far as it is unsure (empirical Bayes), and the expected least
+ * one is taken. Condition: length of the prolonged petiole over that of the seen one. */
+#include "traits/rosette_base.h"
+
+#include "cloud/linear.h"
+#include "traits/axis.h"
+#include "traits/families.h"
+#include "traits/plant_foot.h"
+
+#include <math.h>
+
+enum { FEWEST_PETIOLES = 3, NEWTON_STEPS = 8, INTEGRAL_STEPS = 400 };
+
+static const double low_share = 0.5; /* height over width: virtual rosettes have 0.2 to 0.4 */
+static const double tail = 6;        /* SD beyond which a normal value is not looked for */
+/* Part of the noise that stays in all radii as a common error, as in an extreme of the surface. */
+static const double noise_unknown = 0.5;
+
+bool plm_may_be_rosette(const plm_scene *scene)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < scene->plant_count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], scene->plant[i][k]);
+            high[k] = fmaxf(high[k], scene->plant[i][k]);
+        }
+    const double width = hypot((double)(high[0] - low[0]), (double)(high[1] - low[1])) / sqrt(2);
+    return (double)(high[2] - low[2]) < low_share * width;
+}
+
+/** The height of the plant's underside as a petiole tells it. */
+typedef struct underside {
+    double height, std_error;
+    double noise; /* of the petiole's points */
+} underside;
+
+/* Parameter at which a petiole's line comes nearest to a vertical one. */
+static double nearest_to_vertical(const plm_axis *axis, const double place[2])
+{
+    double t = axis->begin;
+    for (int step = 0; step < NEWTON_STEPS; step++) {
+        double at[3], first[3], second[3];
+        plm_curve_derivatives(&axis->line, t, at, first, second);
+        const double off[2] = {at[0] - place[0], at[1] - place[1]};
+        t -= (off[0] * first[0] + off[1] * first[1]) / (first[0] * first[0] + first[1] * first[1]);
+    }
+    return t;
+}
+
+/* Whether a petiole leads to the foot, and then its underside there. */
+static plm_status underside_of(const plm_scene *scene, const plm_organ *petiole, const double foot[2], underside *out,
+                               bool *found, plm_error *error)
+{
+    const plm_axis *axis = petiole->axis;
+    plm_estimate diameter = {.value = NAN, .std_error = NAN};
+    const plm_status status = plm_trait_petiole_diameter(scene, petiole, &diameter, error);
+    *found = false;
+    if (status != PLM_OK || diameter.state != PLM_STATE_OK) return status;
+    const double t = nearest_to_vertical(axis, foot);
+    double at[3], tangent[3];
+    plm_curve_point(&axis->line, t, at);
+    plm_curve_tangent(&axis->line, t, tangent);
+    const double behind = fabs(plm_curve_length(&axis->line, t, axis->begin)), lever = 0.5 * axis->length + behind;
+    /* a line that misses the foot sideways misses it as much in height */
+    const double off = hypot(at[0] - foot[0], at[1] - foot[1]);
+    *out = (underside){.height = at[2] - 0.5 * diameter.value * hypot(tangent[0], tangent[1]),
+                       .std_error = hypot(off, hypot(axis->direction_error * lever, 0.5 * diameter.std_error)),
+                       .noise = axis->noise};
+    *found = behind < axis->length && isfinite(out->height) && isfinite(out->std_error) && out->std_error > 0;
+    return PLM_OK;
+}
+
+/* Draws the heights towards their mean as far as they are unsure: each becomes what is known of it beside the others. */
+static void draw_together(underside *side, size_t count)
+{
+    double weights = 0, squares = 0, mean = 0, chi = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double w = 1 / (side[i].std_error * side[i].std_error);
+        weights += w, squares += w * w, mean += w * side[i].height;
+    }
+    mean /= weights;
+    for (size_t i = 0; i < count; i++) chi += pow((side[i].height - mean) / side[i].std_error, 2);
+    /* variance of the true heights, by moments (R. DerSimonian, N. Laird 1986) */
+    const double between = fmax(chi - (double)(count - 1), 0) / (weights - squares / weights);
+    double centre = 0, centre_weights = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double w = 1 / (side[i].std_error * side[i].std_error + between);
+        centre += w * side[i].height, centre_weights += w;
+    }
+    centre /= centre_weights;
+    for (size_t i = 0; i < count; i++) {
+        const double variance = side[i].std_error * side[i].std_error, kept = between / (between + variance);
+        side[i].height = centre + kept * (side[i].height - centre);
+        side[i].std_error = sqrt(kept * variance + pow(1 - kept, 2) / centre_weights);
+    }
+}
+
+/* Mean and SD of the least of independent normal values, from the chance that all lie above a height. */
+static underside least_of(const underside *side, size_t count)
+{
+    double low = INFINITY, high = INFINITY, noise = 0;
+    for (size_t i = 0; i < count; i++) {
+        low = fmin(low, side[i].height - tail * side[i].std_error);
+        high = fmin(high, side[i].height + tail * side[i].std_error);
+        noise += side[i].noise / (double)count;
+    }
+    const double step = (high - low) / INTEGRAL_STEPS;
+    double mean = 0, squares = 0; /* of the least value over low */
+    for (int k = 0; k < INTEGRAL_STEPS; k++) {
+        const double over = (k + 0.5) * step;
+        double above = 1;
+        for (size_t i = 0; i < count; i++)
+            above *= 0.5 * erfc((low + over - side[i].height) / (sqrt(2) * side[i].std_error));
+        mean += above * step, squares += 2 * over * above * step;
+    }
+    return (underside){low + mean, sqrt(fmax(squares - mean * mean, 0)), noise};
+}
+
+/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing. */
+static void join(const underside *told, plm_extreme *base)
+{
+    const double told_error = hypot(told->std_error, noise_unknown * told->noise);
+    if (!(told_error < base->std_error)) return; /* what was seen is known better */
+    const double above = fmax(-base->value - told->height, 0), told_squared = told_error * told_error;
+    const double seen_squared = fmax(base->std_error * base->std_error, above * above - told_squared);
+    const double sum = 1 / seen_squared + 1 / told_squared;
+    base->value = (base->value / seen_squared - told->height / told_squared) / sum;
+    base->std_error = sqrt(1 / sum);
+}
+
+plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error *error)
+{
+    if (plm_scene_organ(scene, PLM_LABEL_STEM, 0) || !plm_may_be_rosette(scene)) return PLM_OK;
+    double foot[2], foot_error;
+    bool found;
+    plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
+    if (status != PLM_OK || !found) return status;
+    underside *side = plm_alloc(scene->organ_count, sizeof *side, error);
+    if (!side) return PLM_E_MEMORY;
+    size_t count = 0;
+    for (size_t k = 0; k < scene->organ_count && status == PLM_OK; k++) {
+        const plm_organ *organ = &scene->organ[k];
+        if (organ->label != PLM_LABEL_PETIOLE || !organ->axis) continue;
+        status = underside_of(scene, organ, foot, &side[count], &found, error);
+        if (status == PLM_OK && found) count++;
+    }
+    if (status == PLM_OK && count >= FEWEST_PETIOLES) {
+        draw_together(side, count);
+        const underside told = least_of(side, count);
+        join(&told, base);
+    }
+    plm_free(side);
+    return status;
+}

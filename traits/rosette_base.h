@@ -1,0 +1,16 @@
+/* traits/rosette_base.h: the lowest surface of a rosette, which its own leaves hide. Internal. */
+#ifndef PLANTIMETER_TRAITS_ROSETTE_BASE_H
+#define PLANTIMETER_TRAITS_ROSETTE_BASE_H
+
+#include "traits/extreme.h"
+#include "traits/scene.h"
+
+/** Whether a plant is so low against its width that it may be a rosette. Of the points alone: the same whatever is asked for. */
+bool plm_may_be_rosette(const plm_scene *scene);
+
+/** Lowers the base of a rosette (base: of plm_extreme_along down the zenith: minus a height) to where its petioles meet, as
+ * far as they tell: their lines are prolonged to the plant's foot, their radii taken off. Other plants keep theirs. Needs axes.
+ * PLM_E_MEMORY. */
+plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error *error);
+
+#endif
