@@ -14,17 +14,26 @@
 
 static const double WINDOW = 3;                         /* in steps of a working cell */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
-static const double WIDE = 1.6;        /* widths of the tube: a station beyond is blade, one below is tube */
-static const double TUBE_SHARE = 0.5;  /* of a station's points: it is of tube */
-static const double FULL = 0.5;        /* of the points that the tube's stations have */
-static const double LONG_RUN = 2.5;    /* windows: a narrow stretch of this length is tube, however few its points */
-static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
-static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
-static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
-static const double FOOT = 0.35;       /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1;     /* of a step, in the search for the change */
+static const double WIDE = 1.6;       /* widths of the tube: a station beyond is blade, one below is tube */
+static const double TUBE_SHARE = 0.5; /* of a station's points: it is of tube */
+static const double FULL = 0.5;       /* of the points that the tube's stations have */
+static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this length is tube, however few its points */
+static const double BLADE = 3;        /* widths of the tube that the last leaflet reaches at least */
+static const double NEAR = 3.2;       /* points within so many widths of a tube station's middle are of the tube */
+static const double FOOT_LINE = 2;    /* length of the petiole that gives its line at the foot, in R */
+static const double FOOT = 0.35;      /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1;    /* of a step, in the search for the change */
+static const double NARROW =
+    0.07; /* share of the stations of a rosette's leaf that are surely no wider than its tube */
 static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
-enum { BEFORE = 6, AFTER = 9, FEWEST_STATIONS = 6, STATIONS_MOST = 5000 };
+enum {
+    BEFORE = 6,
+    AFTER = 9,
+    FEWEST_STATIONS = 6,
+    STATIONS_MOST = 5000,
+    FOOT_STATIONS = 2, /* hold what stands about the foot */
+    FEWEST_OF_STATION = 5
+};
 
 typedef struct work {
     plm_sketch *sketch;
@@ -160,12 +169,31 @@ static double tube_width(const work *w, size_t first)
     return count ? plm_quantile(w->value, count, 0.4) : 0;
 }
 
+static size_t widest_station(const plm_leaf_way *way, size_t first)
+{
+    size_t widest = first;
+    for (size_t k = first; k < way->station_count; k++)
+        if (way->station[k].width > way->station[widest].width) widest = k;
+    return widest;
+}
+
+/* Leaves of a rosette may be so short that stations of the blade pass as tube: the narrowest ones before the blade's widest
+ * place tell. INFINITY where there are none. */
+static double narrow_width(const work *w)
+{
+    const plm_leaf_way *way = &w->way;
+    const size_t widest = widest_station(way, w->first);
+    size_t count = 0;
+    for (size_t k = FOOT_STATIONS; k < widest; k++)
+        if (way->station[k].count >= FEWEST_OF_STATION) w->value[count++] = (float)way->station[k].width;
+    return count ? plm_quantile(w->value, count, NARROW) : INFINITY;
+}
+
 size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first)
 {
     const double limit = plm_leaf_wide(way);
-    size_t widest = first, best = first;
-    for (size_t k = first; k < way->station_count; k++)
-        if (way->station[k].width > way->station[widest].width) widest = k;
+    const size_t widest = widest_station(way, first);
+    size_t best = first;
     long balance = 0, least = 0;
     for (size_t k = first; k < widest; k++) { /* moving the split beyond station k */
         balance += way->station[k].width > limit ? 1 : -1;
@@ -366,35 +394,18 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
     if (way->station_count >= w->first + FEWEST_STATIONS) {
         measure_stations(w);
         way->tube = tube_width(w, w->first);
+        if (s->habit == PLM_HABIT_ROSETTE) way->tube = fmin(way->tube, narrow_width(w));
         if (way->tube > 0) return status;
     }
     way->count = 0;
     return status;
 }
 
-/* Young leaves of a rosette are so small that stations of their blades pass as tube, and widen what is taken for the
- * petiole: none counts as wider than the median of the plant's. */
-static plm_status usual_tube(work *w, double *width, plm_error *error)
-{
-    plm_status status = PLM_OK;
-    size_t count = 0;
-    float *seen = plm_alloc(w->sketch->leaf_count + 1, sizeof *seen, error);
-    if (!seen) return PLM_E_MEMORY;
-    for (size_t leaf = 0; leaf < w->sketch->leaf_count && status == PLM_OK; leaf++) {
-        status = measure_leaf(w, (int32_t)leaf, error);
-        if (status == PLM_OK && w->way.count) seen[count++] = (float)w->way.tube;
-    }
-    *width = plm_quantile(seen, count, 0.5);
-    plm_free(seen);
-    return status;
-}
-
-static plm_status set_leaf(work *w, int32_t leaf, double widest, plm_error *error)
+static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
     const plm_status status = measure_leaf(w, leaf, error);
     if (status != PLM_OK || !way->count) return status;
-    way->tube = fmin(way->tube, widest);
     const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
     const size_t split = compound ? last_split(w, w->first) : plm_leaf_only_split(way, w->first);
     if (split <= w->first || split >= way->station_count) return PLM_OK;
@@ -428,10 +439,8 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
-    double widest = INFINITY;
-    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE) status = usual_tube(&w, &widest, error);
     for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)
-        status = set_leaf(&w, (int32_t)leaf, widest, error);
+        status = set_leaf(&w, (int32_t)leaf, error);
     plm_scratch_free(&w.scratch, NULL);
     return status;
 }

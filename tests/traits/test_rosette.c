@@ -150,6 +150,24 @@ static void a_few_points_say_how_little_they_know(void **unused)
     }
 }
 
+/* Stations of the youngest blades passed as tube: a quarter of a leaf of 4 square millimetres was called petiole. */
+static void the_youngest_blades_are_whole(void **unused)
+{
+    (void)unused;
+    for (uint64_t seed = 302; seed <= 305; seed += 3) {
+        const plm_scan_options dome = {.scanner = PLM_SCANNER_DOME, .seed = seed, .points = 60000};
+        plm_virtual_plant plant;
+        plm_measurement measurement = measure("leaf_area", seed, &dome, false, &plant);
+        assert_int_equal(measurement.value_count, plant.leaf_count);
+        for (size_t i = 0; i < measurement.value_count; i++) {
+            const double area = nearest_leaf(&plant, measurement.value[i].centroid)->area;
+            assert_near(measurement.value[i].estimate.value, area, 0.11 * area);
+        }
+        plm_measurement_free(&measurement);
+        plm_virtual_plant_free(&plant);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -158,6 +176,7 @@ int main(void)
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),
         cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
         cmocka_unit_test(a_few_points_say_how_little_they_know),
+        cmocka_unit_test(the_youngest_blades_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
