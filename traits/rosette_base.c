@@ -6,8 +6,8 @@
 
 #include "cloud/linear.h"
 #include "traits/axis.h"
-#include "traits/families.h"
 #include "traits/plant_foot.h"
+#include "traits/tube_diameter.h"
 
 #include <math.h>
 
@@ -50,14 +50,12 @@ static double nearest_to_vertical(const plm_axis *axis, const double place[2])
 }
 
 /* Whether a petiole leads to the foot, and then its underside there. */
-static plm_status underside_of(const plm_scene *scene, const plm_organ *petiole, const double foot[2], underside *out,
-                               bool *found, plm_error *error)
+static bool underside_of(const plm_scene *scene, const plm_axis *axis, const double foot[2], underside *out)
 {
-    const plm_axis *axis = petiole->axis;
-    plm_estimate diameter = {.value = NAN, .std_error = NAN};
-    const plm_status status = plm_trait_petiole_diameter(scene, petiole, &diameter, error);
-    *found = false;
-    if (status != PLM_OK || diameter.state != PLM_STATE_OK) return status;
+    double diameter, diameter_error;
+    if (!isfinite(axis->radius_error)) return false; /* no tube was found */
+    plm_tube_deflate(2 * axis->radius, 2 * axis->radius_error, axis->noise, scene->sampling.fused, &diameter,
+                     &diameter_error);
     const double t = nearest_to_vertical(axis, foot);
     double at[3], tangent[3];
     plm_curve_point(&axis->line, t, at);
@@ -65,11 +63,10 @@ static plm_status underside_of(const plm_scene *scene, const plm_organ *petiole,
     const double behind = fabs(plm_curve_length(&axis->line, t, axis->begin)), lever = 0.5 * axis->length + behind;
     /* a line that misses the foot sideways misses it as much in height */
     const double off = hypot(at[0] - foot[0], at[1] - foot[1]);
-    *out = (underside){.height = at[2] - 0.5 * diameter.value * hypot(tangent[0], tangent[1]),
-                       .std_error = hypot(off, hypot(axis->direction_error * lever, 0.5 * diameter.std_error)),
+    *out = (underside){.height = at[2] - 0.5 * diameter * hypot(tangent[0], tangent[1]),
+                       .std_error = hypot(off, hypot(axis->direction_error * lever, 0.5 * diameter_error)),
                        .noise = axis->noise};
-    *found = behind < axis->length && isfinite(out->height) && isfinite(out->std_error) && out->std_error > 0;
-    return PLM_OK;
+    return behind < axis->length && isfinite(out->height) && isfinite(out->std_error) && out->std_error > 0;
 }
 
 /* Draws the heights towards their mean as far as they are unsure: each becomes what is known of it beside the others. */
@@ -135,18 +132,17 @@ plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error
     if (plm_scene_organ(scene, PLM_LABEL_STEM, 0) || !plm_may_be_rosette(scene)) return PLM_OK;
     double foot[2], foot_error;
     bool found;
-    plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
+    const plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
     if (status != PLM_OK || !found) return status;
     underside *side = plm_alloc(scene->organ_count, sizeof *side, error);
     if (!side) return PLM_E_MEMORY;
     size_t count = 0;
-    for (size_t k = 0; k < scene->organ_count && status == PLM_OK; k++) {
+    for (size_t k = 0; k < scene->organ_count; k++) {
         const plm_organ *organ = &scene->organ[k];
-        if (organ->label != PLM_LABEL_PETIOLE || !organ->axis) continue;
-        status = underside_of(scene, organ, foot, &side[count], &found, error);
-        if (status == PLM_OK && found) count++;
+        if (organ->label == PLM_LABEL_PETIOLE && organ->axis)
+            count += underside_of(scene, organ->axis, foot, &side[count]);
     }
-    if (status == PLM_OK && count >= FEWEST_PETIOLES) {
+    if (count >= FEWEST_PETIOLES) {
         draw_together(side, count);
         const underside told = least_of(side, count);
         join(&told, base);
