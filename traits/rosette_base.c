@@ -115,12 +115,13 @@ static underside least_of(const underside *side, size_t count)
     return (underside){low + mean, sqrt(fmax(squares - mean * mean, 0)), noise};
 }
 
-/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing. */
+/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing. Where it lies lower
+ * than is told, or is known better, it stays. */
 static void join(const underside *told, plm_extreme *base)
 {
-    const double told_error = hypot(told->std_error, noise_unknown * told->noise);
-    if (!(told_error < base->std_error)) return; /* what was seen is known better */
-    const double above = fmax(-base->value - told->height, 0), told_squared = told_error * told_error;
+    const double told_error = hypot(told->std_error, noise_unknown * told->noise), above = -base->value - told->height;
+    if (!(told_error < base->std_error) || !(above > 0)) return;
+    const double told_squared = told_error * told_error;
     const double seen_squared = fmax(base->std_error * base->std_error, above * above - told_squared);
     const double sum = 1 / seen_squared + 1 / told_squared;
     base->value = (base->value / seen_squared - told->height / told_squared) / sum;
