@@ -5,6 +5,7 @@
 #include "segment/segment.h"
 #include "simulate/simulate.h"
 #include "support/label_score.h"
+#include "support/virtual_plant.h"
 
 #define DEPTH_CAMERA .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = 5e-4, .views = 12
 
@@ -116,6 +117,17 @@ static void noise_makes_no_petioles_of_straps(void **unused)
     assert_true(score.iou[PLM_LABEL_STEM] >= 0.55); /* feet on alternate sides draw no line of the stem aside */
 }
 
+/* Their feet are all but as thick as the stem. */
+static void slimmer_feet_are_no_petioles(void **unused)
+{
+    (void)unused;
+    const plm_scan_options options = {DEPTH_CAMERA, .seed = 9202, .outliers = 0.005};
+    virtual_plant made = virtual_plant_make("maize", 0, &options);
+    assert_int_equal(made.found.habit, PLM_HABIT_STRAP);
+    assert_int_equal(made.found.leaf_count, made.plant.leaf_count);
+    virtual_plant_free(&made);
+}
+
 /* A depth camera that sees all of a tall plant stands so far off that the noise is a third or half of the stem's radius: most
  * of the blades are round then, and the feet are drawn into the stem. */
 static void noise_hides_no_foot_in_the_stem(void **unused)
@@ -220,6 +232,7 @@ int main(void)
                                        cmocka_unit_test(noise_joins_no_blades),
                                        cmocka_unit_test(the_stem_of_maize_is_its_tube),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
+                                       cmocka_unit_test(slimmer_feet_are_no_petioles),
                                        cmocka_unit_test(noise_hides_no_foot_in_the_stem),
                                        cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
                                        cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
