@@ -276,12 +276,11 @@ static plm_status run_stage(plant_job *job, plm_stage_id id, plm_error *error)
     return status == PLM_E_TIME ? PLM_OK : status;
 }
 
-/* Whether the plant may be a rosette is seen only now: heights then need axes. Where there is no time for these, they are told
- * without. */
+/* Whether the plant may be a rosette is seen only now: heights then need axes. Within a time budget they are told without. */
 static void widen_plan(plant_job *job)
 {
     plm_plan *plan = &job->draft->plan;
-    if (plan->needs & PLM_NEEDS_BASE && plm_may_be_rosette(&job->scene))
+    if (plan->needs & PLM_NEEDS_BASE && !job->options->deadline && plm_may_be_rosette(&job->scene))
         plm_plan_widen(plan, PLM_NEEDS_AXIS, plm_cloud_attributes(job->cloud), job->options,
                        "for the base of a low plant, which its leaves may hide");
 }

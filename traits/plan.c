@@ -185,6 +185,7 @@ plm_status plm_plan_of(const plm_measure_options *options, const bool *list, uns
         chosen[i] = list[i] && !is_blind;
         if (chosen[i]) made.needs |= plm_needs_closure(trait[i].needs);
     }
+    const unsigned for_base = made.needs & PLM_NEEDS_BASE ? plm_needs_closure(PLM_NEEDS_AXIS) : 0;
     for (int id = 0; id < PLM_STAGE_COUNT; id++) {
         plm_stage *stage = &made.stage[id];
         stage->name = stages[id].name;
@@ -192,7 +193,9 @@ plm_status plm_plan_of(const plm_measure_options *options, const bool *list, uns
         if (!stage->runs)
             plm_plan_leave_out(&made, (plm_stage_id)id, "left out: %s",
                                id == PLM_STAGE_LIGHT ? "absorbed_radiation was not asked for by its name"
-                                                     : "no trait asked for needs it");
+                               : for_base & stages[id].needs
+                                   ? "needed only where the plant is so low that it may hide its base"
+                                   : "no trait asked for needs it");
         else if (stages[id].needs == NEEDS_ALWAYS)
             snprintf(stage->why, sizeof stage->why, "all traits asked for");
         else

@@ -13,21 +13,22 @@
 
 enum { FEWEST_PETIOLES = 3, NEWTON_STEPS = 8, INTEGRAL_STEPS = 400 };
 
-static const double low_share = 0.5; /* height over width: virtual rosettes have 0.2 to 0.4 */
-static const double tail = 6;        /* SD beyond which a normal value is not looked for */
+static const double low_share = 0.45; /* height over width: virtual rosettes have 0.2 to 0.4 */
+static const double tail = 6;         /* SD beyond which a normal value is not looked for */
 /* Part of the noise that stays in all radii as a common error, as in an extreme of the surface. */
 static const double noise_unknown = 0.5;
 
 bool plm_may_be_rosette(const plm_scene *scene)
 {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double mean[2] = {0}, low = INFINITY, high = -INFINITY, farthest = 0;
+    for (size_t i = 0; i < scene->plant_count; i++) {
+        for (int k = 0; k < 2; k++) mean[k] += scene->plant[i][k] / (double)scene->plant_count;
+        low = fmin(low, scene->plant[i][2]);
+        high = fmax(high, scene->plant[i][2]);
+    }
     for (size_t i = 0; i < scene->plant_count; i++)
-        for (int k = 0; k < 3; k++) {
-            low[k] = fminf(low[k], scene->plant[i][k]);
-            high[k] = fmaxf(high[k], scene->plant[i][k]);
-        }
-    const double width = hypot((double)(high[0] - low[0]), (double)(high[1] - low[1])) / sqrt(2);
-    return (double)(high[2] - low[2]) < low_share * width;
+        farthest = fmax(farthest, hypot(scene->plant[i][0] - mean[0], scene->plant[i][1] - mean[1]));
+    return high - low < low_share * 2 * farthest;
 }
 
 /** The height of the plant's underside as a petiole tells it. */
@@ -50,7 +51,8 @@ static double nearest_to_vertical(const plm_axis *axis, const double place[2])
 }
 
 /* Whether a petiole leads to the foot, and then its underside there. */
-static bool underside_of(const plm_scene *scene, const plm_axis *axis, const double foot[2], underside *out)
+static bool underside_of(const plm_scene *scene, const plm_axis *axis, const double foot[2], double foot_error,
+                         underside *out)
 {
     double diameter, diameter_error;
     if (!isfinite(axis->radius_error)) return false; /* no tube was found */
@@ -61,16 +63,18 @@ static bool underside_of(const plm_scene *scene, const plm_axis *axis, const dou
     plm_curve_point(&axis->line, t, at);
     plm_curve_tangent(&axis->line, t, tangent);
     const double behind = fabs(plm_curve_length(&axis->line, t, axis->begin)), lever = 0.5 * axis->length + behind;
-    /* a line that misses the foot sideways misses it as much in height */
-    const double off = hypot(at[0] - foot[0], at[1] - foot[1]);
-    *out = (underside){.height = at[2] - 0.5 * diameter * hypot(tangent[0], tangent[1]),
+    /* a line that misses the foot sideways misses it as much in height; along the line the foot is as unsure as it is */
+    const double flat = hypot(tangent[0], tangent[1]), shift = foot_error * fabs(tangent[2]) / flat;
+    const double off = hypot(hypot(at[0] - foot[0], at[1] - foot[1]), shift);
+    *out = (underside){.height = at[2] - 0.5 * diameter * flat,
                        .std_error = hypot(off, hypot(axis->direction_error * lever, 0.5 * diameter_error)),
                        .noise = axis->noise};
     return behind < axis->length && isfinite(out->height) && isfinite(out->std_error) && out->std_error > 0;
 }
 
-/* Draws the heights towards their mean as far as they are unsure: each becomes what is known of it beside the others. */
-static void draw_together(underside *side, size_t count)
+/* Draws the heights towards their mean as far as they are unsure: each becomes what is known of it beside the others, with the
+ * standard error that is its own. Gives that of the mean, as far as they share it. */
+static double draw_together(underside *side, size_t count)
 {
     double weights = 0, squares = 0, mean = 0, chi = 0;
     for (size_t i = 0; i < count; i++) {
@@ -87,11 +91,14 @@ static void draw_together(underside *side, size_t count)
         centre += w * side[i].height, centre_weights += w;
     }
     centre /= centre_weights;
+    double shared = 0;
     for (size_t i = 0; i < count; i++) {
         const double variance = side[i].std_error * side[i].std_error, kept = between / (between + variance);
         side[i].height = centre + kept * (side[i].height - centre);
-        side[i].std_error = sqrt(kept * variance + pow(1 - kept, 2) / centre_weights);
+        side[i].std_error = sqrt(kept * variance);
+        shared += pow(1 - kept, 2) / centre_weights / (double)count;
     }
+    return sqrt(shared);
 }
 
 /* Mean and SD of the least of independent normal values, from the chance that all lie above a height. */
@@ -103,6 +110,7 @@ static underside least_of(const underside *side, size_t count)
         high = fmin(high, side[i].height + tail * side[i].std_error);
         noise += side[i].noise / (double)count;
     }
+    if (!(high > low)) return (underside){low, 0, noise}; /* all alike */
     const double step = (high - low) / INTEGRAL_STEPS;
     double mean = 0, squares = 0; /* of the least value over low */
     for (int k = 0; k < INTEGRAL_STEPS; k++) {
@@ -128,9 +136,16 @@ static void join(const underside *told, plm_extreme *base)
     base->std_error = sqrt(1 / sum);
 }
 
+static bool has_stem(const plm_scene *scene)
+{
+    for (size_t k = 0; k < scene->organ_count; k++)
+        if (scene->organ[k].label == PLM_LABEL_STEM) return true;
+    return false;
+}
+
 plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error *error)
 {
-    if (plm_scene_organ(scene, PLM_LABEL_STEM, 0) || !plm_may_be_rosette(scene)) return PLM_OK;
+    if (scene->options->deadline || has_stem(scene) || !plm_may_be_rosette(scene)) return PLM_OK;
     double foot[2], foot_error;
     bool found;
     const plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
@@ -141,11 +156,12 @@ plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error
     for (size_t k = 0; k < scene->organ_count; k++) {
         const plm_organ *organ = &scene->organ[k];
         if (organ->label == PLM_LABEL_PETIOLE && organ->axis)
-            count += underside_of(scene, organ->axis, foot, &side[count]);
+            count += underside_of(scene, organ->axis, foot, foot_error, &side[count]);
     }
     if (count >= FEWEST_PETIOLES) {
-        draw_together(side, count);
-        const underside told = least_of(side, count);
+        const double shared = draw_together(side, count);
+        underside told = least_of(side, count);
+        told.std_error = hypot(told.std_error, shared);
         join(&told, base);
     }
     plm_free(side);
