@@ -14,17 +14,16 @@
 
 static const double WINDOW = 3;                         /* in steps of a working cell */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
-static const double WIDE = 1.6;       /* widths of the tube: a station beyond is blade, one below is tube */
-static const double TUBE_SHARE = 0.5; /* of a station's points: it is of tube */
-static const double FULL = 0.5;       /* of the points that the tube's stations have */
-static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this length is tube, however few its points */
-static const double BLADE = 3;        /* widths of the tube that the last leaflet reaches at least */
-static const double NEAR = 3.2;       /* points within so many widths of a tube station's middle are of the tube */
-static const double FOOT_LINE = 2;    /* length of the petiole that gives its line at the foot, in R */
-static const double FOOT = 0.35;      /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1;    /* of a step, in the search for the change */
-static const double NARROW =
-    0.07; /* share of the stations of a rosette's leaf that are surely no wider than its tube */
+static const double WIDE = 1.6;        /* widths of the tube: a station beyond is blade, one below is tube */
+static const double TUBE_SHARE = 0.5;  /* of a station's points: it is of tube */
+static const double FULL = 0.5;        /* of the points that the tube's stations have */
+static const double LONG_RUN = 2.5;    /* windows: a narrow stretch of this length is tube, however few its points */
+static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
+static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
+static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
+static const double FOOT = 0.35;       /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1;     /* of a step, in the search for the change */
+static const double NARROW = 0.07;     /* quantile of the widths of a rosette's leaf that is its tube's */
 static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
 enum {
     BEFORE = 6,

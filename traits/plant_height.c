@@ -21,24 +21,26 @@ static plm_status find_top(const plm_scene *scene, plm_extreme *top, plm_error *
 
 /* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem, but for depth
  * cameras, which are noisier at a stem's sides than on leaves that many views see. */
-static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, plm_error *error)
+static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, bool *lowered,
+                                    plm_error *error)
 {
     plm_status status = find_top(scene, top, error);
     if (status != PLM_OK) return status;
     const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise};
     status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
-    return status == PLM_OK ? plm_rosette_base(scene, base, error) : status;
+    return status == PLM_OK ? plm_rosette_base(scene, base, lowered, error) : status;
 }
 
 plm_status plm_trait_plant_height(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
     plm_extreme top, base;
-    const plm_status status = find_top_and_base(scene, &top, &base, error);
+    bool lowered;
+    const plm_status status = find_top_and_base(scene, &top, &base, &lowered, error);
     if (status != PLM_OK) return status;
     out->value = top.value + base.value;
     out->std_error = hypot(top.std_error, base.std_error);
-    out->method = "extremes of the surface";
+    out->method = lowered ? "extremes of the surface, base by petioles" : "extremes of the surface";
     return PLM_OK;
 }
 
@@ -97,7 +99,8 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
     plm_voxels voxels = {0};
     float *height = NULL;
     const float(*xyz)[3] = (const float(*)[3])scene->plant;
-    plm_status status = find_top_and_base(scene, &top, &base, error);
+    bool lowered;
+    plm_status status = find_top_and_base(scene, &top, &base, &lowered, error);
     const double extent = status == PLM_OK ? top.value + base.value : 0;
     if (status == PLM_OK && !(extent > 0)) status = plm_fail(error, PLM_E_DEGENERATE, "the plant has no height");
     /* 150 voxels high: fine against the traits' errors, coarse against the spacing of any cloud worth measuring */
@@ -113,7 +116,7 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
         out->value = level(height, count, share) + base.value;
         const double spread = isfinite(half[0]) && isfinite(half[1]) ? 0.5 * (half[0] - half[1]) : extent;
         out->std_error = sqrt(base.std_error * base.std_error + spread * spread + pow(extent / 150, 2) / 12);
-        out->method = "heights of equal areas";
+        out->method = lowered ? "heights of equal areas, base by petioles" : "heights of equal areas";
     }
     plm_free(height);
     plm_voxels_free(&voxels);

@@ -124,16 +124,17 @@ static underside least_of(const underside *side, size_t count)
 }
 
 /* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing. Where it lies lower
- * than is told, or is known better, it stays. */
-static void join(const underside *told, plm_extreme *base)
+ * than is told, or is known better, it stays: false. */
+static bool join(const underside *told, plm_extreme *base)
 {
     const double told_error = hypot(told->std_error, noise_unknown * told->noise), above = -base->value - told->height;
-    if (!(told_error < base->std_error) || !(above > 0)) return;
+    if (!(told_error < base->std_error) || !(above > 0)) return false;
     const double told_squared = told_error * told_error;
     const double seen_squared = fmax(base->std_error * base->std_error, above * above - told_squared);
     const double sum = 1 / seen_squared + 1 / told_squared;
     base->value = (base->value / seen_squared - told->height / told_squared) / sum;
     base->std_error = sqrt(1 / sum);
+    return true;
 }
 
 static bool has_stem(const plm_scene *scene)
@@ -143,8 +144,9 @@ static bool has_stem(const plm_scene *scene)
     return false;
 }
 
-plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error *error)
+plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, bool *lowered, plm_error *error)
 {
+    *lowered = false;
     if (scene->options->deadline || has_stem(scene) || !plm_may_be_rosette(scene)) return PLM_OK;
     double foot[2], foot_error;
     bool found;
@@ -162,7 +164,7 @@ plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, plm_error
         const double shared = draw_together(side, count);
         underside told = least_of(side, count);
         told.std_error = hypot(told.std_error, shared);
-        join(&told, base);
+        *lowered = join(&told, base);
     }
     plm_free(side);
     return status;

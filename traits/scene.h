@@ -41,7 +41,8 @@ struct plm_scene {
     float (*plant)[3];  /* their offsets */
     uint32_t *plant_row;    /* rows of cloud */
     plm_index *plant_index; /* over plant; NULL below 12 points, and where no trait needs neighbours, organs or hull: a
-                               height alone builds none, but of a low plant, and must find its own scales in the bands that it reads */
+                               height alone builds none but of a low plant, and must find its own scales in the bands
+                               that it reads */
     plm_sampling sampling;  /* of the plant, as plant_index: else zero (but extent) */
     char organ_reason[160]; /* why the plant was not cut into organs; "" where it was */
     size_t organ_count;

@@ -86,6 +86,7 @@ static void petioles_tell_the_base_that_they_hide(void **unused)
             assert_int_equal(measurement.value_count, k + 1);
             assert_string_equal(measurement.value[k].trait->name, "plant_height"); /* behind leaf_count */
             height[k] = measurement.value[k].estimate;
+            assert_string_equal(height[k].method, "extremes of the surface, base by petioles");
             assert_near(height[k].value, built, 0.12e-3);
             assert_near(height[k].value, built, 2 * height[k].std_error);
             plm_measurement_free(&measurement);
