@@ -109,7 +109,9 @@ static double lower_radius(const plm_sketch *sketch, uint32_t top, const uint32_
 }
 
 /* The end of the stem: the point to which the way from the base is thick for the longest, what is thin on the way taken
- * off twice. The highest thick point may stand on a petiole that rises beyond the stem's tip. */
+ * off twice. A length counts by the square of its radius over the way's so far: a long petiole, hardly slimmer than the
+ * stem, would else win over the rest of the stem. The highest thick point may stand on a petiole that rises beyond the
+ * stem's tip. */
 static plm_status thickest_way(const plm_sketch *sketch, const tube_ways *ways, uint32_t *top, plm_error *error)
 {
     const size_t count = sketch->working.count;
@@ -129,7 +131,8 @@ static plm_status thickest_way(const plm_sketch *sketch, const tube_ways *ways, 
             const double before = usual[parent[i]], share = fmin(length / memory, 1);
             const bool is_stout = sketch->is_tube[i] && radius >= THIN_WAY * before;
             const double slimmer = fmax(before + share * (fmin(radius, before) - before), TAPER * lower);
-            gain[i] = gain[parent[i]] + (float)(length * (is_stout ? 1 : -THIN_LOSS));
+            const double thick = fmin(radius / before, 1);
+            gain[i] = gain[parent[i]] + (float)(length * (is_stout ? thick * thick : -THIN_LOSS));
             usual[i] = (float)(is_stout ? slimmer : before);
         }
         for (uint32_t i = 0; i < count; i++)

@@ -303,7 +303,9 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 
 /* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
  * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
- * 1 / sin(angle) of any error of the stem's radius. Without stem: the first points. */
+ * 1 / sin(angle) of any error of the stem's radius. Where the labels are our own what is near to the stem is called stem,
+ * and the first points lie later (by 0.7 to 1.3 mm in the middle over simulated plants): of a sharp tube the crossing tells
+ * alone. Without stem: the first points. */
 static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
 {
     if (!p->stem) return first;
@@ -320,6 +322,8 @@ static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
                  first_weight = 1 / (first_error * first_error);
     const double sum = crossing_weight + first_weight;
     const double behind = first.position + half_cut;
+    if (p->own && line == &p->tube.axis)
+        return (plm_end){crossing, fmax(crossing_error, 0.25 * fabs(crossing - behind))};
     return (plm_end){(crossing_weight * crossing + first_weight * behind) / sum,
                      fmax(1 / sqrt(sum), 0.5 * fabs(crossing - behind))};
 }
