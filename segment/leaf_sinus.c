@@ -21,6 +21,8 @@ static const double OPEN = 3.5;   /* ... one where the lobes turn away, in half 
 static const double CLOSED = 0.6; /* half gap at the junction, in half breadths */
 static const double STEEP = 0.15; /* half gap lost over the length, at least: else nothing closes */
 static const double BIN = 1.5;    /* length of a bin, in steps */
+/* The junction that the widths tell is too early by at most so much, in R and in SDs of the noise. */
+static const double FARTHEST = 0.75, FARTHEST_NOISE = 6;
 enum { BINS = 64, FEWEST_BINS = 4 };
 
 /* Middle and direction of the petiole's last piece. */
@@ -131,5 +133,5 @@ double plm_leaf_sinus(const plm_leaf_way *way, double origin[3], double along[3]
     const double scatter = sqrt(fmax(squares - value * value / n - slope * slope * spread, 0) / (n - 2));
     if (!(slope < -STEEP) || scatter > ROUGH * slender || first > 0) return 0;
     const double meet = at / n + (CLOSED * slender - value / n) / slope;
-    return meet > 0 ? fmin(meet, FORWARD * R) : 0;
+    return meet > 0 ? fmin(meet, fmin(FORWARD * R, FARTHEST * R + FARTHEST_NOISE * s->scale.noise)) : 0;
 }
