@@ -336,24 +336,19 @@ static void clean_foot(work *w)
     }
 }
 
-static void relabel_simple(work *w, double beyond, const double origin[3], const double along[3])
+static void relabel_simple(work *w)
 {
     const plm_leaf_way *way = &w->way;
-    const double reach = NEAR * way->tube, slender = 2 * way->tube;
+    const double reach = NEAR * way->tube;
     for (size_t k = 0; k < way->count; k++) {
         const uint32_t i = way->order[k];
-        const float *p = w->sketch->working.xyz[i];
-        if (way->distance[i] < way->junction) {
-            const plm_station *station = plm_leaf_station(way, way->distance[i]);
-            if (station->width < plm_leaf_wide(way))
-                w->sketch->is_tube[i] = gap_squared(p, station->middle) < reach * reach;
+        if (way->distance[i] >= way->junction) {
+            w->sketch->is_tube[i] = false;
             continue;
         }
-        double d[3];
-        for (int a = 0; a < 3; a++) d[a] = p[a] - origin[a];
-        const double forward = plm_dot(d, along);
-        w->sketch->is_tube[i] =
-            forward >= -slender && forward < beyond && plm_dot(d, d) - forward * forward < slender * slender;
+        const plm_station *station = plm_leaf_station(way, way->distance[i]);
+        if (station->width < plm_leaf_wide(way))
+            w->sketch->is_tube[i] = gap_squared(w->sketch->working.xyz[i], station->middle) < reach * reach;
     }
 }
 
@@ -411,11 +406,10 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     way->junction = change(way, w->first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
         return PLM_OK;
-    double origin[3] = {0}, along[3] = {0};
     if (compound)
         relabel_compound(w);
     else
-        relabel_simple(w, plm_leaf_sinus(way, origin, along, w->value), origin, along);
+        relabel_simple(w);
     clean_foot(w);
     return compound ? plm_leaf_leaflets(w->sketch, way, error) : PLM_OK;
 }
@@ -433,7 +427,7 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.mark = plm_scratch_take(&w.scratch, count, sizeof *w.mark);
     w.start = plm_scratch_take(&w.scratch, count, sizeof *w.start);
     w.trail = plm_scratch_take(&w.scratch, count, sizeof *w.trail);
-    w.value = plm_scratch_take(&w.scratch, 4 * count + STATIONS_MOST, sizeof *w.value);
+    w.value = plm_scratch_take(&w.scratch, count + STATIONS_MOST, sizeof *w.value);
     w.way.order = plm_scratch_take(&w.scratch, count, sizeof *w.way.order);
     w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);

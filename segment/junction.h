@@ -50,10 +50,4 @@ void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t c
  * on, up to the widest, are narrow. */
 size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first);
 
-/** Lobes that reach back to both sides of the petiole leave a sinus between them that narrows towards the junction; near
- * it the level sets jump over. Where the leaf has one, fits the sinus' edges and gives how far beyond way->junction they
- * meet the petiole, its line there (a point at way->junction and a unit direction); else 0. scratch: 4 floats a point of
- * the leaf. */
-double plm_leaf_sinus(const plm_leaf_way *way, double origin[3], double along[3], float *scratch);
-
 #endif

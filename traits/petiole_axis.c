@@ -25,6 +25,8 @@ static const double least_ring = 0.45;  /* share of a ring that must be outside 
  * and in SDs of the noise, and of the direction (medians over simulated plants). */
 static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.75;
 static const double own_free_foot_noise = 1.9; /* instead, where no stem tells the foot: rosettes */
+/* Own labels in noise call stem what is so near to its surface, in SDs of the noise and in its radii. */
+static const double own_margin_noise = 1.5, own_margin_radii = 0.1;
 static const double own_direction = 0.25 * PLM_PI / 180;
 static const double node_turn = 0.4 * PLM_PI / 180; /* of the stem at its nodes, within less than a span of its line */
 static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */
@@ -40,7 +42,8 @@ typedef struct petiole {
     bool has_tube;
     bool own; /* labels are the segmentation's, not given */
     double radius, noise;
-    double start; /* parameter of line before which points are left out */
+    double margin; /* off the stem's surface: what lies nearer is not called petiole */
+    double start;  /* parameter of line before which points are left out */
 } petiole;
 
 /* ---- The stem at the node -------------------------------------------------------------------------------------- */
@@ -224,14 +227,14 @@ static double approach(const petiole *p, const plm_curve *line, double clearance
 }
 
 /* Where the stem cuts the tube obliquely only a part of its ring is left: the share of the ring about the line at t that
- * lies outside of the stem, and the mean of that part, from the line. */
+ * lies outside of the stem (by the margin), and the mean of that part, from the line. */
 static double ring_left(const petiole *p, const plm_curve *line, double t, double mean[3])
 {
     double centre[3], tangent[3], across[2][3], foot;
     const double radius = radius_at(p, t);
     plm_curve_point(line, t, centre);
     memset(mean, 0, 3 * sizeof *mean);
-    if (off_stem(p->stem->axis, centre, &foot) > radius) return 1;
+    if (off_stem(p->stem->axis, centre, &foot) > radius + p->margin) return 1;
     plm_curve_tangent(line, t, tangent);
     plm_frame_of_axis(tangent, across[0], across[1]);
     int left = 0;
@@ -242,7 +245,7 @@ static double ring_left(const petiole *p, const plm_curve *line, double t, doubl
             arm[k] = radius * (cos(angle) * across[0][k] + sin(angle) * across[1][k]);
             point[k] = centre[k] + arm[k];
         }
-        if (off_stem(p->stem->axis, point, &foot) <= 0) continue;
+        if (off_stem(p->stem->axis, point, &foot) <= p->margin) continue;
         left++;
         for (int k = 0; k < 3; k++) mean[k] += arm[k];
     }
@@ -254,6 +257,8 @@ static double ring_left(const petiole *p, const plm_curve *line, double t, doubl
  * is gone, and fits again. */
 static plm_status refit_free_part(petiole *p, plm_error *error)
 {
+    if (p->own && line_of(p) != &p->tube.axis)
+        p->margin = own_margin_noise * p->noise + own_margin_radii * p->stem->axis->radius;
     plm_tube_points kept = {.count = 0, .xyz = plm_alloc(p->points.count, sizeof *kept.xyz, error)};
     if (!kept.xyz) return PLM_E_MEMORY;
     plm_status status = PLM_OK;

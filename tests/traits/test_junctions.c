@@ -120,6 +120,18 @@ static void a_sinus_ends_near_to_where_the_blade_widens(void **state)
     assert_true(degrees < 0.3);
 }
 
+/* What is near to the stem's surface is called stem, and the line at the foot was pulled off it: 3.9 degrees. */
+static void a_noisy_foot_is_balanced_for_what_is_called_stem(void **state)
+{
+    (void)state;
+    double degrees, stem;
+    const plm_scan_options rgbd = {
+        .scanner = PLM_SCANNER_RGBD, .seed = 9001, .points = 45000, .noise = 0.0005, .outliers = 0.005};
+    errors_of("pepper", 9001, &rgbd, &degrees, &stem);
+    print_message("pepper: stem off by %.2f mm, petioles by %.2f degrees at most\n", stem, degrees);
+    assert_true(degrees < 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -128,6 +140,7 @@ int main(void)
         cmocka_unit_test(a_long_petiole_is_not_the_stem),
         cmocka_unit_test(a_clean_petiole_begins_at_the_stems_surface),
         cmocka_unit_test(a_sinus_ends_near_to_where_the_blade_widens),
+        cmocka_unit_test(a_noisy_foot_is_balanced_for_what_is_called_stem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

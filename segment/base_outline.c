@@ -1,0 +1,290 @@
+/* segment/base_outline.c: the place of the junction by the outline of the blade's base. Flattened, the petiole is a strip
+ * that ends at the junction, and each side of the blade begins there: as a wedge ahead of it (a base that narrows to the
+ * petiole), straight to the side, or with a lobe that reaches back and whose edge leaves the petiole by a slope and bends
+ * away. The points are taken for a Poisson process whose density is that of the petiole in the strip, of the blade within
+ * the outline, and little elsewhere, all blurred by the noise; the junction is where the likelihood, over all outlines of
+ * either side, is greatest. Where the noise is small beside the petiole, that a tube is thick and a blade is not counts as
+ * well (base_thickness.c). */
+#include "segment/blade_base.h"
+
+#include "segment/scratch.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lengths in R. */
+static const double BACK = 3;                               /* what of the leaf is looked at, to ROWS steps along */
+static const double STEP = 1.0 / 24, COLUMN = 1.0 / 18;     /* of the pixels along and across */
+static const double EXPECTED_SD = 0.25;                     /* of the first guess, in lengths of petiole seen */
+static const double PETIOLE_FROM = -2.6, PETIOLE_TO = -0.4; /* these give the densities */
+static const double SHORTEST = 0.35;                        /* petiole that tells its density */
+static const double BLADE_FROM = 0.55, BLADE_TO = 1.8, BLADE_SIDE = 0.45;
+static const double SHARPEST = 0.04;  /* blur, at least */
+static const double ELSEWHERE = 0.03; /* density beside the leaf, of the blade's */
+static const double FAINTEST = 0.1;   /* density of the petiole, of the blade's, at least */
+/* Weight of the thickness: midribs are thick for a while, and neighbours' heights are not independent. */
+static const double THICKNESS = 0.3;
+static const double SWOLLEN = 1; /* SDs of the noise by which an outline seems to lie outward */
+/* Outlines: half width of the blade over the way ahead; slope of a lobe's edge, and its curvature over R. */
+static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
+static const double ROUND[] = {0.15, 0.3, 0.6, 1.2, 2.4};
+static const double SLOPE[] = {0.3, 0.4, 0.5, 0.65, 0.85, 1.1, 1.5, 2.2, 3.5};
+static const double BEND[] = {0, 0.12, 0.25, 0.5, 0.9};
+enum {
+    WEDGES = sizeof WEDGE / sizeof *WEDGE,
+    ROUNDS = sizeof ROUND / sizeof *ROUND,
+    BENDS = sizeof BEND / sizeof *BEND,
+    LOBES = WEDGES + ROUNDS, /* the first of them */
+    OUTLINES = LOBES + BENDS * (sizeof SLOPE / sizeof *SLOPE),
+    ROWS = 144,
+    COLUMNS = 20,
+    SEARCH_FROM = 46, /* rows: from 1.1 R before the first guess, ... */
+    SEARCH_TO = 120,  /* ... to 2 R beyond, and IMAGE_ROWS hold all shifts */
+    IMAGE_ROWS = ROWS + SEARCH_TO,
+    COARSE = 2, /* rows between first tries */
+    KERNEL = 40,
+    FEWEST = 5
+};
+
+/* Density, and its logarithm, of a leaf with one outline: row k is (k - SEARCH_TO + 0.5) steps from the junction. */
+typedef struct image {
+    float density[IMAGE_ROWS][COLUMNS];
+    double expected[IMAGE_ROWS + 1]; /* numbers of points up to each row */
+} image;
+
+typedef struct pixel {
+    int row, column, count;
+} pixel;
+
+typedef struct outline {
+    const plm_base_view *view;
+    double step, column, blur;
+    double petiole, blade, elsewhere; /* points per square metre */
+    double foot;                      /* where the petiole begins, or what is looked at */
+    pixel *side[2];
+    size_t pixels[2];
+    double before[IMAGE_ROWS], within[COLUMNS];
+    image *image; /* of each outline */
+} outline;
+
+static double below(double x)
+{
+    return 0.5 * erfc(-x * 0.70710678118654752);
+}
+
+/* Densities of petiole and blade. false where either is too short or has too few points. */
+static bool find_densities(outline *o)
+{
+    const plm_base_view *v = o->view;
+    const double R = v->scale, strip = v->radius + 2 * v->noise;
+    size_t petiole = 0, blade = 0;
+    double foot = PETIOLE_TO * R;
+    for (size_t i = 0; i < v->count; i++) {
+        const double x = v->place[i][0], y = fabs(v->place[i][1]);
+        if (x > PETIOLE_FROM * R && x < PETIOLE_TO * R && y < strip) {
+            petiole++;
+            foot = fmin(foot, x);
+        }
+        blade += x > BLADE_FROM * R && x < BLADE_TO * R && y < BLADE_SIDE * R;
+    }
+    const double length = PETIOLE_TO * R - foot;
+    if (petiole < FEWEST || blade < FEWEST || length < SHORTEST * R) return false;
+    o->blade = (double)blade / ((BLADE_TO - BLADE_FROM) * 2 * BLADE_SIDE * R * R);
+    o->petiole = fmax((double)petiole / (length * 2 * v->radius), FAINTEST * o->blade);
+    o->elsewhere = ELSEWHERE * o->blade;
+    o->foot = foot;
+    return true;
+}
+
+/* Points of either side by pixels; those without points are left out. */
+static void count_pixels(outline *o, int (*count)[COLUMNS])
+{
+    const plm_base_view *v = o->view;
+    for (int s = 0; s < 2; s++) {
+        memset(count, 0, ROWS * sizeof *count);
+        for (size_t i = 0; i < v->count; i++) {
+            const double row = floor((v->place[i][0] + BACK * v->scale) / o->step);
+            const double column = floor(fabs(v->place[i][1]) / o->column);
+            if ((v->place[i][1] < 0) != s || !(row >= 0 && row < ROWS && column < COLUMNS)) continue;
+            count[(int)row][(int)column]++;
+        }
+        for (int row = 0; row < ROWS; row++)
+            for (int column = 0; column < COLUMNS; column++)
+                if (count[row][column]) o->side[s][o->pixels[s]++] = (pixel){row, column, count[row][column]};
+    }
+}
+
+/* ---- The image of an outline ------------------------------------------------------------------------------------ */
+
+static bool is_blade(const outline *o, size_t which, double along, double across)
+{
+    const double swollen = SWOLLEN * o->view->noise;
+    if (which < WEDGES) return along > -swollen && across < WEDGE[which] * (along + swollen);
+    if (which < LOBES) {
+        const double radius = ROUND[which - WEDGES] * o->view->scale;
+        return along > -swollen && across * across < 2 * radius * (along + swollen);
+    }
+    if (along > -swollen) return true;
+    const double slope = SLOPE[(which - LOBES) / BENDS], bend = BEND[(which - LOBES) % BENDS];
+    return across > -slope * along + bend * along * along / o->view->scale - swollen;
+}
+
+/* Mean of what lies about each pixel, by a normal curve; across, the other side is taken for a mirror image. */
+static void blur(image *m, float (*sharp)[COLUMNS], const double kernel[KERNEL], int reach, bool across)
+{
+    const int most = (across ? COLUMNS : IMAGE_ROWS) - 1;
+    memcpy(sharp, m->density, sizeof m->density);
+    for (int row = 0; row < IMAGE_ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++) {
+            double sum = 0;
+            for (int k = -reach; k <= reach; k++) {
+                int at = (across ? column : row) + k;
+                if (across && at < 0) at = -1 - at;
+                at = at < 0 ? 0 : at > most ? most : at;
+                sum += kernel[k < 0 ? -k : k] * (double)(across ? sharp[row][at] : sharp[at][column]);
+            }
+            m->density[row][column] = (float)sum;
+        }
+}
+
+static void blur_along(image *m, float (*sharp)[COLUMNS], double sd, bool across)
+{
+    double kernel[KERNEL], sum = 0;
+    int reach = (int)ceil(3 * sd);
+    if (reach >= KERNEL) reach = KERNEL - 1;
+    for (int k = 0; k <= reach; k++) {
+        kernel[k] = exp(-0.5 * k * k / (sd * sd));
+        sum += (k ? 2 : 1) * kernel[k];
+    }
+    for (int k = 0; k <= reach; k++) kernel[k] /= sum;
+    blur(m, sharp, kernel, reach, across);
+}
+
+/* Shares of the petiole's density that lie at a row and at a column: it is as wide as it is, and ends at the junction. */
+static void fill_strip(outline *o)
+{
+    const double r = o->view->radius;
+    for (int row = 0; row < IMAGE_ROWS; row++) o->before[row] = below((SEARCH_TO - row - 0.5) * o->step / o->blur);
+    for (int column = 0; column < COLUMNS; column++) {
+        const double y = (column + 0.5) * o->column;
+        o->within[column] = o->petiole * (below((r - y) / o->blur) - below((-r - y) / o->blur));
+    }
+}
+
+/* Draws an outline: density becomes the logarithm. */
+static void draw(outline *o, size_t which, float (*sharp)[COLUMNS])
+{
+    image *m = &o->image[which];
+    for (int row = 0; row < IMAGE_ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++)
+            m->density[row][column] =
+                is_blade(o, which, (row - SEARCH_TO + 0.5) * o->step, (column + 0.5) * o->column) ? 1 : 0;
+    blur_along(m, sharp, o->blur / o->step, false);
+    blur_along(m, sharp, o->blur / o->column, true);
+    m->expected[0] = 0;
+    for (int row = 0; row < IMAGE_ROWS; row++) {
+        double sum = 0;
+        for (int column = 0; column < COLUMNS; column++) {
+            const double density =
+                o->before[row] * o->within[column] + o->blade * (double)m->density[row][column] + o->elsewhere;
+            sum += density;
+            m->density[row][column] = logf((float)density);
+        }
+        m->expected[row + 1] = m->expected[row] + sum * o->step * o->column;
+    }
+}
+
+/* Log likelihood of one side's points with one outline that begins at a row. */
+static double compare(const outline *o, int s, const image *m, int junction)
+{
+    const int shift = SEARCH_TO - junction;
+    double sum = m->expected[shift] - m->expected[shift + ROWS];
+    for (size_t k = 0; k < o->pixels[s]; k++) {
+        const pixel *p = &o->side[s][k];
+        sum += p->count * (double)m->density[p->row + shift][p->column];
+    }
+    return sum;
+}
+
+/* ---- The search ------------------------------------------------------------------------------------------------- */
+
+/* Where a parabola through a value and those before and after it has its top, in steps from it. */
+static double top_of(double before, double at, double after)
+{
+    const double bend = before - 2 * at + after;
+    return bend < 0 && isfinite(bend) ? 0.5 * (before - after) / bend : 0;
+}
+
+/* What the search goes by. */
+typedef struct evidence {
+    const plm_base_height *list;
+    const double *cumulated;
+    size_t heights;
+    double expected;
+} evidence;
+
+/* Log likelihood of a junction at a row: either side with its best outline, thickness, and what was expected. */
+static double judge(const outline *o, const evidence *e, int junction)
+{
+    const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_SD * -o->foot);
+    double sum = THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - 0.5 * off * off;
+    for (int s = 0; s < 2; s++) {
+        double best = -INFINITY;
+        for (size_t which = 0; which < OUTLINES; which++) best = fmax(best, compare(o, s, &o->image[which], junction));
+        sum += best;
+    }
+    return sum;
+}
+
+/* Every COARSE-th row, then the rows about the best of them. */
+static double search(const outline *o, const evidence *e)
+{
+    double total[SEARCH_TO + 1];
+    int best = SEARCH_FROM;
+    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) total[k] = -INFINITY;
+    for (int k = SEARCH_FROM; k < SEARCH_TO; k += COARSE) {
+        total[k] = judge(o, e, k);
+        if (total[k] > total[best]) best = k;
+    }
+    const int low = best - COARSE > SEARCH_FROM ? best - COARSE : SEARCH_FROM;
+    const int high = best + COARSE < SEARCH_TO ? best + COARSE : SEARCH_TO - 1;
+    for (int k = low; k <= high; k++) {
+        if (!isfinite(total[k])) total[k] = judge(o, e, k);
+        if (total[k] > total[best]) best = k;
+    }
+    const bool inner = best > low && best < high;
+    const double part = inner ? top_of(total[best - 1], total[best], total[best + 1]) : 0;
+    return (best + part) * o->step - BACK * o->view->scale;
+}
+
+plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error)
+{
+    plm_scratch scratch = {.error = error};
+    outline *o = plm_scratch_take(&scratch, 1, sizeof *o);
+    pixel *pixels = plm_scratch_take(&scratch, (size_t)2 * ROWS * COLUMNS, sizeof *pixels);
+    int(*count)[COLUMNS] = plm_scratch_take(&scratch, ROWS, sizeof *count);
+    plm_base_height *list = plm_scratch_take(&scratch, view->count + 1, sizeof *list);
+    double *rest = plm_scratch_take(&scratch, view->count + 1, sizeof *rest);
+    double *cumulated = plm_scratch_take(&scratch, view->count + 1, sizeof *cumulated);
+    image *images = plm_scratch_take(&scratch, OUTLINES, sizeof *images);
+    float(*sharp)[COLUMNS] = plm_scratch_take(&scratch, IMAGE_ROWS, sizeof *sharp);
+    *junction = NAN;
+    if (!scratch.failed) {
+        *o = (outline){.view = view,
+                       .step = STEP * view->scale,
+                       .column = COLUMN * view->scale,
+                       .blur = fmax(view->noise, SHARPEST * view->scale),
+                       .image = images,
+                       .side = {pixels, pixels + (size_t)ROWS * COLUMNS}};
+        if (find_densities(o)) {
+            count_pixels(o, count);
+            fill_strip(o);
+            for (size_t which = 0; which < OUTLINES; which++) draw(o, which, sharp);
+            const evidence found = {list, cumulated, plm_base_heights(view, list, rest, cumulated), expected};
+            *junction = search(o, &found);
+        }
+    }
+    const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}

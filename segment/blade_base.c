@@ -1,0 +1,284 @@
+/* segment/blade_base.c: the border between a petiole and its blade at all points of the plant. The stages before find it on
+ * the sketch, by widths of level sets, to a few steps; here the leaf about that place is flattened, the outline of its base
+ * tells the border (base_outline.c), the petiole's line is taken up to there, and the outline is asked once more. */
+#include "segment/blade_base.h"
+
+#include "cloud/linear.h"
+#include "segment/scratch.h"
+#include "segment/subset.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lengths in R. */
+static const double PIECE = 1.6;                         /* of the petiole before its end: gives its line there */
+static const double REACH = 4.4;                         /* what of the leaf is flattened */
+static const double PLANE = 1.8;                         /* blade so near gives its plane, ... */
+static const double AHEAD = 0.1;                         /* ... from so far ahead */
+static const double THICK = 0.9;                         /* off the plane */
+static const double SIDE = 1.1;                          /* to either side of the petiole: what changes its label */
+static const double MIDDLE_BACK = 2;                     /* petiole that gives its middle across */
+static const double END = 0.98;                          /* quantile of the petiole's points that is its end */
+static const double THINNEST = 0.25;                     /* radius of a petiole, in the stem's, at least */
+static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines before and after; of petiole and blade */
+enum { FEWEST_PETIOLE = 15, FEWEST_BLADE = 30, FEWEST_PIECE = 9, FEWEST_PLANE = 15, MOST_POINTS = 8000, ROUNDS = 2 };
+
+typedef struct leaf_points {
+    const float (*xyz)[3];
+    const uint32_t *point; /* the leaf's points, ... */
+    size_t count, petiole; /* ... those of its petiole first */
+} leaf_points;
+
+/* The petiole's line at its end, and the blade's plane beyond. */
+typedef struct frame {
+    double origin[3], along[3], across[3], off[3];
+    double ahead[3], ahead_across[3]; /* the same two in the blade's plane */
+    double middle;                    /* of the petiole, across */
+    double radius;
+} frame;
+
+static void offset_from(const float xyz[3], const double origin[3], double out[3])
+{
+    for (int a = 0; a < 3; a++) out[a] = xyz[a] - origin[a];
+}
+
+/* Mean and principal axes of chosen points. */
+static void principal(const leaf_points *leaf, const uint32_t *chosen, size_t count, double mean[3],
+                      double vector[3][3])
+{
+    double moment[6] = {0}, value[3], d[3];
+    memset(mean, 0, 3 * sizeof *mean);
+    for (size_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) mean[a] += leaf->xyz[chosen[i]][a] / (double)count;
+    for (size_t i = 0; i < count; i++) {
+        offset_from(leaf->xyz[chosen[i]], mean, d);
+        for (int a = 0, m = 0; a < 3; a++)
+            for (int c = a; c < 3; c++) moment[m++] += d[a] * d[c];
+    }
+    plm_eigen3(moment, value, vector);
+}
+
+static void turn_towards(double vector[3], const double direction[3])
+{
+    if (plm_dot(vector, direction) < 0)
+        for (int a = 0; a < 3; a++) vector[a] = -vector[a];
+}
+
+/* Quantile END of the places along a direction. */
+static double end_along(const leaf_points *leaf, const uint32_t *chosen, size_t count, const double origin[3],
+                        const double direction[3], float *value)
+{
+    double d[3];
+    for (size_t i = 0; i < count; i++) {
+        offset_from(leaf->xyz[chosen[i]], origin, d);
+        value[i] = (float)plm_dot(d, direction);
+    }
+    return plm_quantile(value, count, END);
+}
+
+/* The petiole's end, direction there and radius, by its labels. chosen and value: scratch. */
+static bool first_line(const leaf_points *leaf, const plm_scale *scale, uint32_t *chosen, float *value, frame *f)
+{
+    double mean[3], blade[3], vector[3][3], d[3], piece_mean[3], towards[3];
+    principal(leaf, leaf->point + leaf->petiole, leaf->count - leaf->petiole, blade, vector);
+    principal(leaf, leaf->point, leaf->petiole, mean, vector);
+    for (int a = 0; a < 3; a++) towards[a] = blade[a] - mean[a];
+    turn_towards(vector[0], towards);
+    double whole[3];
+    memcpy(whole, vector[0], sizeof whole);
+    const double from = end_along(leaf, leaf->point, leaf->petiole, mean, whole, value) - PIECE * scale->radius;
+    size_t count = 0;
+    for (size_t i = 0; i < leaf->petiole; i++) {
+        offset_from(leaf->xyz[leaf->point[i]], mean, d);
+        if (plm_dot(d, whole) > from) chosen[count++] = leaf->point[i];
+    }
+    if (count < FEWEST_PIECE) return false;
+    principal(leaf, chosen, count, piece_mean, vector);
+    turn_towards(vector[0], whole);
+    memcpy(f->along, vector[0], sizeof f->along);
+    const double end = end_along(leaf, chosen, count, piece_mean, f->along, value);
+    double squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        offset_from(leaf->xyz[chosen[i]], piece_mean, d);
+        const double forward = plm_dot(d, f->along);
+        squares += (plm_dot(d, d) - forward * forward) / (double)count;
+    }
+    for (int a = 0; a < 3; a++) f->origin[a] = piece_mean[a] + end * f->along[a];
+    f->radius = fmax(sqrt(fmax(squares - 2 * scale->noise * scale->noise, 0)), THINNEST * scale->stem_radius);
+    return true;
+}
+
+/* The blade's plane beyond the line's origin. false where little blade lies there, or it stands across the petiole. */
+static bool find_plane(const leaf_points *leaf, const plm_scale *scale, uint32_t *chosen, frame *f)
+{
+    const double R = scale->radius;
+    double mean[3], vector[3][3], d[3];
+    size_t count = 0;
+    for (size_t i = leaf->petiole; i < leaf->count; i++) {
+        offset_from(leaf->xyz[leaf->point[i]], f->origin, d);
+        if (plm_dot(d, f->along) > AHEAD * R && plm_dot(d, d) < PLANE * PLANE * R * R) chosen[count++] = leaf->point[i];
+    }
+    if (count < FEWEST_PLANE) return false;
+    principal(leaf, chosen, count, mean, vector);
+    const double *normal = vector[2], lean = plm_dot(normal, f->along);
+    for (int a = 0; a < 3; a++) {
+        f->off[a] = normal[a] - lean * f->along[a];
+        f->ahead[a] = f->along[a] - lean * normal[a];
+    }
+    if (plm_normalise(f->off) < LEAST_LEVEL || plm_normalise(f->ahead) < LEAST_LEVEL) return false;
+    plm_cross(f->off, f->along, f->across);
+    plm_cross(normal, f->ahead, f->ahead_across);
+    return true;
+}
+
+/* Place of a point along, across (about the petiole's middle) and off. */
+static void flatten(const frame *f, const float xyz[3], double place[3])
+{
+    double d[3];
+    offset_from(xyz, f->origin, d);
+    const double forward = plm_dot(d, f->along);
+    place[0] = forward > 0 ? plm_dot(d, f->ahead) : forward;
+    place[1] = (forward > 0 ? plm_dot(d, f->ahead_across) : plm_dot(d, f->across)) - f->middle;
+    place[2] = plm_dot(d, f->off);
+}
+
+static void find_middle(const leaf_points *leaf, const plm_scale *scale, float *value, frame *f)
+{
+    size_t count = 0;
+    f->middle = 0;
+    for (size_t i = 0; i < leaf->count; i++) {
+        double place[3];
+        flatten(f, leaf->xyz[leaf->point[i]], place);
+        if (fabs(place[1]) < 1.5 * f->radius && place[0] > -MIDDLE_BACK * scale->radius && place[0] < 0)
+            value[count++] = (float)place[1];
+    }
+    if (count > FEWEST_PIECE) f->middle = plm_quantile(value, count, 0.5);
+}
+
+/* The line of what lies about the old one up to the junction; its origin goes to the junction. false: none. */
+static bool next_line(const leaf_points *leaf, const plm_scale *scale, double junction, uint32_t *chosen, frame *f)
+{
+    const double R = scale->radius, reach = f->radius + 2 * scale->noise + 0.065 * R;
+    double mean[3], vector[3][3], d[3];
+    size_t count = 0;
+    for (size_t i = 0; i < leaf->count; i++) {
+        offset_from(leaf->xyz[leaf->point[i]], f->origin, d);
+        const double forward = plm_dot(d, f->along);
+        if (forward < junction - AHEAD * R && forward > junction - PLANE * R &&
+            plm_dot(d, d) - forward * forward < reach * reach)
+            chosen[count++] = leaf->point[i];
+    }
+    if (count < FEWEST_PIECE) return false;
+    principal(leaf, chosen, count, mean, vector);
+    turn_towards(vector[0], f->along);
+    if (plm_dot(vector[0], f->along) < LEAST_TURN) return false;
+    for (int a = 0; a < 3; a++) d[a] = f->origin[a] + junction * f->along[a] - mean[a];
+    const double forward = plm_dot(d, vector[0]);
+    for (int a = 0; a < 3; a++) f->origin[a] = mean[a] + forward * vector[0][a];
+    memcpy(f->along, vector[0], sizeof f->along);
+    return true;
+}
+
+/* Places of the leaf's points near to the junction, thinned where they are many. Gives their number. */
+static size_t flatten_near(const leaf_points *leaf, const plm_scale *scale, const frame *f, double (*place)[3])
+{
+    const double reach = REACH * scale->radius;
+    uint32_t mask = 0;
+    for (;;) {
+        size_t count = 0;
+        for (size_t i = 0; i < leaf->count; i++) {
+            const float *xyz = leaf->xyz[leaf->point[i]];
+            double d[3];
+            offset_from(xyz, f->origin, d);
+            if (plm_dot(d, d) > reach * reach || (plm_point_bits(xyz) & mask)) continue;
+            flatten(f, xyz, place[count]);
+            if (fabs(place[count][2]) < THICK * scale->radius) count++;
+        }
+        if (count <= MOST_POINTS || mask == UINT32_MAX) return count;
+        mask = 2 * mask + 1;
+    }
+}
+
+static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, const frame *f, double expected,
+                              double *junction, plm_error *error)
+{
+    plm_base_view view = {.scale = scale->radius, .radius = f->radius, .noise = scale->noise};
+    view.place = plm_alloc(leaf->count, sizeof *view.place, error);
+    if (!view.place) return PLM_E_MEMORY;
+    view.count = flatten_near(leaf, scale, f, view.place);
+    const plm_status status = plm_base_find(&view, expected, junction, error);
+    plm_free(view.place);
+    return status;
+}
+
+/* Beyond the junction all is blade; before it, up to where the petiole ended, what lies about its line is petiole. */
+static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame *f, double old_end, double junction,
+                    const uint32_t *row, plm_segmentation *out)
+{
+    const double R = scale->radius, strip = f->radius + 1.5 * scale->noise;
+    for (size_t i = 0; i < leaf->count; i++) {
+        double place[3];
+        flatten(f, leaf->xyz[leaf->point[i]], place);
+        if (fabs(place[1]) > SIDE * R || fabs(place[2]) > THICK * R || fabs(place[0]) > REACH * R) continue;
+        uint8_t *label = &out->label[row[leaf->point[i]]];
+        if (place[0] >= junction)
+            *label = PLM_LABEL_LEAF;
+        else if (place[0] > old_end - AHEAD * R && fabs(place[1]) < strip && fabs(place[2]) < strip + scale->noise)
+            *label = PLM_LABEL_PETIOLE;
+    }
+}
+
+static plm_status set_leaf(const leaf_points *leaf, const plm_scale *scale, const uint32_t *row, uint32_t *chosen,
+                           float *value, plm_segmentation *out, plm_error *error)
+{
+    frame f;
+    double junction = NAN, moved = 0; /* of the origin, from the petiole's end by its labels */
+    if (leaf->petiole < FEWEST_PETIOLE || leaf->count - leaf->petiole < FEWEST_BLADE) return PLM_OK;
+    if (!first_line(leaf, scale, chosen, value, &f)) return PLM_OK;
+    for (int round = 0; round < ROUNDS; round++) {
+        frame next = f;
+        if (round && !next_line(leaf, scale, junction, chosen, &next)) break;
+        if (!find_plane(leaf, scale, chosen, &next)) break;
+        find_middle(leaf, scale, value, &next);
+        double found;
+        const double shift = round ? moved + junction : 0;
+        const plm_status status = ask_outline(leaf, scale, &next, -shift, &found, error);
+        if (status != PLM_OK) return status;
+        if (isnan(found)) break;
+        f = next, junction = found, moved = shift;
+    }
+    if (!isnan(junction)) relabel(leaf, scale, &f, -moved, junction, row, out);
+    return PLM_OK;
+}
+
+plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
+                           plm_segmentation *out, plm_error *error)
+{
+    plm_scratch scratch = {.error = error};
+    const size_t leaves = out->leaf_count;
+    uint32_t *first = plm_scratch_take(&scratch, 2 * leaves + 2, sizeof *first); /* by leaf: petiole, then blade */
+    uint32_t *point = plm_scratch_take(&scratch, count + 1, sizeof *point);
+    uint32_t *chosen = plm_scratch_take(&scratch, count + 1, sizeof *chosen);
+    float *value = plm_scratch_take(&scratch, count + 1, sizeof *value);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    for (int pass = 0; pass < 2 && status == PLM_OK; pass++) {
+        for (size_t i = 0; i < count; i++) {
+            const uint8_t label = out->label[row[i]];
+            const int32_t leaf = out->organ[row[i]];
+            if ((label != PLM_LABEL_PETIOLE && label != PLM_LABEL_LEAF) || leaf < 0 || (size_t)leaf >= leaves) continue;
+            const size_t slot = 2 * (size_t)leaf + (label == PLM_LABEL_LEAF);
+            if (pass)
+                point[first[slot]++] = (uint32_t)i;
+            else
+                first[slot + 1]++;
+        }
+        for (size_t slot = 1; !pass && slot <= 2 * leaves; slot++) first[slot] += first[slot - 1];
+    }
+    for (size_t leaf = 0; leaf < leaves && status == PLM_OK; leaf++) {
+        const uint32_t begin = leaf ? first[2 * leaf - 1] : 0, middle = first[2 * leaf], end = first[2 * leaf + 1];
+        const leaf_points points = {xyz, point + begin, end - begin, middle - begin};
+        status = set_leaf(&points, scale, row, chosen, value, out, error);
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}

@@ -1,0 +1,117 @@
+/* The border between petiole and blade by the outline of the blade's base: flattened leaves of known shape. */
+#include "support/test.h"
+
+#include "cloud/random.h"
+#include "segment/blade_base.h"
+
+#include <math.h>
+
+enum { MOST = 20000 };
+static const double R = 0.0045, TUBE = 0.0007;
+
+typedef struct base_shape {
+    const char *name;
+    double wedge;       /* blade's half width over the way ahead; 0: as below */
+    double round;       /* radius of the base's curvature, in R; 0: as below */
+    double slope, bend; /* of the lobes' edges */
+} base_shape;
+
+static const base_shape shapes[] = {
+    {.name = "a wedge", .wedge = 1.0},
+    {.name = "a round base", .round = 1.0},
+    {.name = "a straight base", .wedge = INFINITY},
+    {.name = "deep lobes", .slope = 0.45, .bend = 0.2},
+    {.name = "wide lobes", .slope = 1.2, .bend = 0.1},
+};
+
+static bool is_blade(const base_shape *shape, double ahead, double side)
+{
+    if (shape->wedge > 0) return ahead > 0 && side < shape->wedge * ahead;
+    if (shape->round > 0) return ahead > 0 && side * side < 2 * shape->round * R * ahead;
+    return ahead > 0 || side > -shape->slope * ahead + shape->bend * ahead * ahead / R;
+}
+
+/* A leaf whose blade begins at `junction`: a tube that ends there and a sheet, `density` points per square millimetre of both,
+ * moved by noise to all sides. */
+static size_t make_leaf(const base_shape *shape, double junction, double density, double noise, uint64_t seed,
+                        double (*place)[3])
+{
+    plm_random random = {.key = plm_key(seed, 0)};
+    const double half = 3 * R, side = 2 * R;
+    const size_t tries = (size_t)(density * 1e6 * 2 * half * 2 * side);
+    const size_t around = (size_t)(density * 1e6 * (half + junction) * 2 * 3.14159 * TUBE);
+    size_t count = 0;
+    for (size_t i = 0; i < tries; i++) {
+        const double x = (2 * plm_draw(&random) - 1) * half, y = (2 * plm_draw(&random) - 1) * side;
+        if (!is_blade(shape, x - junction, fabs(y))) continue;
+        place[count][0] = x, place[count][1] = y, place[count++][2] = 0;
+    }
+    for (size_t i = 0; i < around; i++) {
+        const double angle = 2 * 3.14159 * plm_draw(&random);
+        place[count][0] = -half + (half + junction) * plm_draw(&random);
+        place[count][1] = TUBE * cos(angle), place[count++][2] = TUBE * sin(angle);
+    }
+    assert_true(count < MOST);
+    for (size_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) place[i][a] += noise * plm_draw_normal(&random);
+    return count;
+}
+
+/* Largest error over places of the junction, in millimetres; the first guess is 0 throughout. */
+static double largest_error(const base_shape *shape, double density, double noise)
+{
+    static double place[MOST][3];
+    double largest = 0;
+    for (int k = -2; k <= 4; k++) {
+        const double built = 0.2 * k * R;
+        plm_error error = {0};
+        double found;
+        const size_t count = make_leaf(shape, built, density, noise, (uint64_t)(k + 3), place);
+        const plm_base_view view = {.count = count, .place = place, .scale = R, .radius = TUBE, .noise = noise};
+        assert_ok(plm_base_find(&view, 0, &found, &error));
+        assert_true(isfinite(found));
+        largest = fmax(largest, 1e3 * fabs(found - built));
+    }
+    print_message("%s, %.1f mm of noise: %.2f mm\n", shape->name, 1e3 * noise, largest);
+    return largest;
+}
+
+static void without_noise_the_border_is_told_to_a_tenth_of_R(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 8, 0) < 0.45);
+}
+
+/* Half a millimetre of noise fills the end of a sinus: its edges tell where it was. */
+static void in_noise_the_outline_tells_it(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 4, 0.0005) < 1.5);
+}
+
+static void too_little_tells_none(void **state)
+{
+    (void)state;
+    double place[40][3] = {{0}}, found = 0;
+    plm_error error = {0};
+    for (int i = 0; i < 40; i++) place[i][0] = -1e-4 * i; /* a petiole without blade */
+    const plm_base_view bare = {.count = 40, .place = place, .scale = R, .radius = TUBE};
+    assert_ok(plm_base_find(&bare, 0, &found, &error));
+    assert_true(isnan(found));
+    for (int i = 0; i < 40; i++) place[i][0] = 2e-4 * i; /* a blade without petiole */
+    assert_ok(plm_base_find(&bare, 0, &found, &error));
+    assert_true(isnan(found));
+    const plm_base_view empty = {.scale = R, .radius = TUBE};
+    assert_ok(plm_base_find(&empty, 0, &found, &error));
+    assert_true(isnan(found));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_noise_the_border_is_told_to_a_tenth_of_R),
+        cmocka_unit_test(in_noise_the_outline_tells_it),
+        cmocka_unit_test(too_little_tells_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
