@@ -46,7 +46,7 @@ enum {
     FEWEST = 5
 };
 
-/* Density, and its logarithm, of a leaf with one outline: row k is (k - SEARCH_TO + 0.5) steps from the junction. */
+/* Logarithm of the density of a leaf with one outline (the share that is blade, while it is drawn): row k is (k - SEARCH_TO + 0.5) steps from the junction. */
 typedef struct image {
     float density[IMAGE_ROWS][COLUMNS];
     double expected[IMAGE_ROWS + 1]; /* numbers of points up to each row */
@@ -69,7 +69,7 @@ typedef struct outline {
 
 static double below(double x)
 {
-    return 0.5 * erfc(-x * 0.70710678118654752);
+    return 0.5 * erfc(-x / sqrt(2));
 }
 
 /* Densities of petiole and blade. false where either is too short or has too few points. */

@@ -51,8 +51,6 @@ static void weigh(plm_base_height *list, const double *rest, size_t count, doubl
     }
 }
 
-/* Squares of the heights in the strip about their course, in their order along: list and cumulated[0 .. count]. Gives their
- * number; 0 where thickness tells nothing. */
 size_t plm_base_heights(const plm_base_view *v, plm_base_height *list, double *rest, double *cumulated)
 {
     const double R = v->scale;
@@ -73,7 +71,6 @@ size_t plm_base_heights(const plm_base_view *v, plm_base_height *list, double *r
     return count;
 }
 
-/* Of heights that have one variance before a place and a smaller one from there on. */
 double plm_base_thickness(const plm_base_view *v, const plm_base_height *list, const double *cumulated, size_t count,
                           double at)
 {

@@ -13,12 +13,11 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
 
 /* ---- Shared by its files --------------------------------------------------------------------------------------- */
 
-/** A leaf about its junction, flattened. */
+/** A leaf about its junction, flattened, in metres. place: along the petiole from a first guess of the junction on (beyond it
+ * along the blade), across, and off the blade's plane. */
 typedef struct plm_base_view {
     size_t count;
-    double (*place)
-        [3];       /**< along the petiole from a first guess of the junction on (beyond it along the blade), across, and
-                           off the blade's plane; in metres */
+    double (*place)[3];
     double scale;  /**< R */
     double radius; /**< of the petiole */
     double noise;

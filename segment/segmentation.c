@@ -61,10 +61,9 @@ static void carry(const plm_sketch *sketch, const uint32_t *row, size_t count, p
     }
 }
 
-static void count_organs(plm_segmentation *out, size_t leaf_count)
+static void count_organs(plm_segmentation *out)
 {
     size_t petioles = 0;
-    out->leaf_count = leaf_count;
     for (size_t i = 0; i < out->count; i++) {
         if (out->label[i] == PLM_LABEL_STEM) out->stem_count = 1;
         if (out->label[i] == PLM_LABEL_PETIOLE && (size_t)out->organ[i] + 1 > petioles)
@@ -170,7 +169,7 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     if (sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes)
         status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);
     if (status != PLM_OK) goto done;
-    count_organs(&out, sketch.leaf_count);
+    count_organs(&out);
     out.leaf_flags = plm_alloc_zero(out.leaf_count + 1, sizeof *out.leaf_flags, error);
     if (!out.leaf_flags) {
         status = PLM_E_MEMORY;

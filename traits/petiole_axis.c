@@ -43,7 +43,6 @@ typedef struct petiole {
     bool own; /* labels are the segmentation's, not given */
     double radius, noise;
     double margin; /* off the stem's surface: what lies nearer is not called petiole */
-    double start;  /* parameter of line before which points are left out */
 } petiole;
 
 /* ---- The stem at the node -------------------------------------------------------------------------------------- */
