@@ -3,6 +3,7 @@
 #include "segment/segment.h"
 
 #include "segment/blade_base.h"
+#include "segment/petiole_foot.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
 
@@ -166,8 +167,10 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     out.noise = sketch.scale.noise;
     carry(&sketch, row, count, &out);
     out.leaf_count = sketch.leaf_count;
-    if (sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes)
-        status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);
+    if (sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes) {
+        status = plm_petiole_feet((const float(*)[3])xyz, row, count, &sketch, &out, error);
+        if (status == PLM_OK) status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);
+    }
     if (status != PLM_OK) goto done;
     count_organs(&out);
     out.leaf_flags = plm_alloc_zero(out.leaf_count + 1, sizeof *out.leaf_flags, error);

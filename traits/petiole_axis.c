@@ -26,7 +26,7 @@ static const double least_ring = 0.45;  /* share of a ring that must be outside 
 static const double own_junction_radii = 1.2, own_junction_noise = 3, own_foot_radii = 0.1, own_foot_noise = 0.75;
 static const double own_free_foot_noise = 1.9; /* instead, where no stem tells the foot: rosettes */
 /* Own labels in noise call stem what is so near to its surface, in SDs of the noise and in its radii. */
-static const double own_margin_noise = 1.5, own_margin_radii = 0.1;
+static const double own_margin_noise = 1.0, own_margin_radii = 0.1;
 static const double own_direction = 0.25 * PLM_PI / 180;
 static const double node_turn = 0.4 * PLM_PI / 180; /* of the stem at its nodes, within less than a span of its line */
 static const double model_error = 0.12 * PLM_PI / 180; /* of a direction: what degree and shape leave */

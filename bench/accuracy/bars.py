@@ -46,7 +46,8 @@ def add_traits(truth, scores, mode, out):
     organs, kind = true_organs(truth), truth["kind"]
     for (_, trait), rows in scores.items():
         for error, true, sigma, plant, organ in rows:
-            row = (error * (1e3 if trait == "stem_diameter" else 1), true, sigma, kind, plant, organ)
+            unit = 1e3 if trait == "stem_diameter" else 1
+            row = (error * unit, true, sigma * unit, kind, plant, organ)
             for bar in BARS:
                 if bar.split(",")[0].split(" ")[0] != trait:
                     continue
