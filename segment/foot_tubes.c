@@ -308,7 +308,7 @@ static bool is_told(const plm_foot *p)
     size_t all = 0, known = 0;
     for (int a = 0; a < 3; a++) tangent[a] = p->tube[1 + 0].along[a] + 2 * p->foot[0] * p->tube[1 + 0].bend[a];
     plm_normalise(tangent);
-    if (plm_dot(tangent, p->tube[0].along) > cos(LEAST_TURN)) return false;
+    if (fabs(plm_dot(tangent, p->tube[0].along)) > cos(LEAST_TURN)) return false;
     if (p->is_tip && p->end < (-SEARCH_BACK + 2 * STEP) * R) return false;
     if (p->is_tip && p->end > (SEARCH_ON - 2 * STEP) * R) return false;
     for (size_t i = 0; i < p->count; i++) {

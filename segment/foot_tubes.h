@@ -48,7 +48,7 @@ void plm_foot_densities(plm_foot *p);
 /** Which tube a point is of; most: its density there. */
 size_t plm_foot_likeliest(const plm_foot *p, size_t i, double *most);
 
-/** Whether a point is of none of them by such a density. */
+/** The density below which a point is of none of them. */
 double plm_foot_elsewhere(const plm_foot *p);
 
 /** Distance of a point from a tube's line; s: place along it. */

@@ -19,6 +19,7 @@ static const double AT_END = 1.5,
 static const double SHARPEST = 0.15; /* blur in stem radii, at least: tubes are not quite round and straight */
 static const double CLEAR = 2.5;     /* SDs beyond the petiole's surface: not of it */
 static const double GAP = 12;        /* points that a petiole has on a length: it is not without any */
+static const double LEAST_GAP = 0.3; /* a petiole seen in rings or thinly has gaps, too */
 enum { FEWEST_NODES = 12, MOST_POINTS = 6000 };
 
 /* Blocks as long as the plant, shared by its nodes. */
@@ -48,7 +49,8 @@ static double begin_of(const plm_foot *p, float *value)
     if (!count) return INFINITY;
     qsort(value, count, sizeof *value, compare_floats);
     size_t k = count / 2;
-    while (k > 0 && (double)(value[k] - value[k - 1]) < GAP / p->tube[1].density) k--;
+    const double gap = fmax(GAP / p->tube[1].density, LEAST_GAP * p->scale->radius);
+    while (k > 0 && (double)(value[k] - value[k - 1]) < gap) k--;
     return (double)value[k];
 }
 
@@ -58,11 +60,11 @@ static void relabel(const plm_foot *p, double begin)
         const uint32_t at = p->row[p->point[i]];
         double most, s;
         const size_t likeliest = plm_foot_likeliest(p, i, &most);
-        if (p->place[i] < -REACH * p->scale->radius || most < plm_foot_elsewhere(p) || likeliest > 1) continue;
+        if (most < plm_foot_elsewhere(p) || likeliest > 1) continue;
         if (p->out->label[at] == PLM_LABEL_PETIOLE && p->out->organ[at] != p->leaf[0]) continue;
         const double off = plm_tube_distance(&p->tube[1], p->xyz[p->point[i]], &s) - p->tube[1].radius;
-        if (likeliest && off > CLEAR * p->blur) continue;
-        const bool is_petiole = likeliest && s >= begin;
+        if (likeliest && (off > CLEAR * p->blur || s < begin)) continue;
+        const bool is_petiole = likeliest > 0;
         p->out->label[at] = is_petiole ? PLM_LABEL_PETIOLE : PLM_LABEL_STEM;
         p->out->organ[at] = is_petiole ? p->leaf[0] : 0;
     }
@@ -159,8 +161,8 @@ static plm_status set_border(plm_foot *p, size_t count, int32_t leaf, blocks *ro
     p->outside = plm_scratch_take(&scratch, all + 1, sizeof *p->outside);
     p->place = plm_scratch_take(&scratch, all + 1, sizeof *p->place);
     p->count = first;
-    if (!scratch.failed && plm_foot_fit(p)) {
-        const double begin = begin_of(p, room->value);
+    const double begin = !scratch.failed && plm_foot_fit(p) ? begin_of(p, room->value) : INFINITY;
+    if (isfinite(begin)) {
         p->count = all;
         plm_foot_densities(p);
         relabel(p, begin);
@@ -174,7 +176,7 @@ plm_status plm_petiole_feet(const float (*xyz)[3], const uint32_t *row, size_t c
                             plm_segmentation *out, plm_error *error)
 {
     const plm_stem_path *path = &sketch->stem;
-    if (path->count < FEWEST_NODES) return PLM_OK;
+    if (path->count < FEWEST_NODES || !(sketch->scale.stem_radius > 0)) return PLM_OK;
     plm_scratch scratch = {.error = error};
     blocks room = {.point = plm_scratch_take(&scratch, count + 1, sizeof *room.point),
                    .value = plm_scratch_take(&scratch, count + 1, sizeof *room.value),
