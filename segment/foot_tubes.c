@@ -96,7 +96,7 @@ static double radius_of(const plm_foot *p, double squares, size_t count, double 
     return fmax(sqrt(fmax(squares / (double)count - 2 * noise * noise, 0)), least);
 }
 
-/* ---- The two tubes ---------------------------------------------------------------------------------------------- */
+/* ---- The tubes ----------------------------------------------------------------------------------------------- */
 
 /* Density of the stem at a point when it ends at a place: its side, and what closes it. */
 static double stem_density(const plm_foot *p, size_t i, double end)
@@ -106,10 +106,16 @@ static double stem_density(const plm_foot *p, size_t i, double end)
     return below(-off * sd / p->blur) * p->density[i][0] + cap * p->tube[0].density / (2 * PLM_PI * p->tube[0].radius);
 }
 
+/* Share of a petiole that a stem which ends at a place leaves at a point. */
+static double seen_beside(const plm_foot *p, size_t i, double end)
+{
+    return 1 - below((end - p->place[i]) / p->blur) * (1 - p->outside[i]);
+}
+
 /* Which a point is of, by the tubes of the last round: 0 the stem, k the petiole k - 1. */
 size_t plm_foot_likeliest(const plm_foot *p, size_t i, double *most)
 {
-    const double stem = below((p->end - p->place[i]) / p->blur), seen = 1 - stem * (1 - p->outside[i]);
+    const double seen = seen_beside(p, i, p->end);
     size_t best = 0;
     *most = stem_density(p, i, p->end);
     for (size_t k = 1; k <= p->petioles; k++)
@@ -201,7 +207,7 @@ static double foot_of(const plm_foot *p, const plm_foot_tube *petiole, double cl
     return s;
 }
 
-/* The petiole's line, from the way's end on. */
+/* The petiole's line; s is 0 at the middle of its points. */
 static bool fit_petiole(plm_foot *p, size_t which, bool first)
 {
     double mean[3] = {0};
@@ -281,8 +287,7 @@ static double judge(const plm_foot *p, double end)
     const double faint = plm_foot_elsewhere(p);
     double sum = -p->tube[0].density * end;
     for (size_t i = 0; i < p->count; i++) {
-        const double stem = below((end - p->place[i]) / p->blur);
-        const double seen = 1 - stem * (1 - p->outside[i]);
+        const double seen = seen_beside(p, i, end);
         double density = stem_density(p, i, end) + faint;
         for (size_t k = 1; k <= p->petioles; k++) density += seen * p->density[i][k];
         sum += log(density);
