@@ -23,7 +23,8 @@ static const double CLEAR = 2.5;      /* SDs beyond the stem's surface: no stem 
 static const double ON_TUBE = 3;      /* SDs from a tube's surface: of it */
 static const double THINNEST = 0.25;  /* radius of a petiole, in the stem's, at least */
 static const double ELSEWHERE = 0.01; /* density of points, in that of the stem */
-static const double LEAST_TURN = 0.15; /* radians between stem and petiole: else they cannot be told apart */
+static const double LEAST_TURN = 0.15, /* radians between stem and petiole, ... */
+    LEAST_BESIDE = 3.5;                /* ... or SDs between their lines at the foot: else they cannot be told apart */
 static const double CAP_SD = 0.3;      /* of the stem's radius: its end is flat or round */
 static const double LEAST_KNOWN = 0.9; /* of the stem's points are on one of the tubes */
 enum { ROUNDS = 3, FEWEST_STEM = 30 };
@@ -64,11 +65,11 @@ static void line_at(const plm_foot_tube *t, double s, double out[3])
     for (int a = 0; a < 3; a++) out[a] = t->origin[a] + s * t->along[a] + s * s * t->bend[a];
 }
 
-/* Distance of a point from a tube's line; s: place along it. */
-double plm_tube_distance(const plm_foot_tube *t, const float xyz[3], double *s)
+/* Distance of a place from a tube's line; s: place along it. */
+static double distance_from(const plm_foot_tube *t, const double place[3], double *s)
 {
     double d[3], tangent[3];
-    for (int a = 0; a < 3; a++) d[a] = xyz[a] - t->origin[a];
+    for (int a = 0; a < 3; a++) d[a] = place[a] - t->origin[a];
     *s = plm_dot(d, t->along);
     for (int a = 0; a < 3; a++) {
         d[a] -= *s * t->along[a] + *s * *s * t->bend[a];
@@ -77,6 +78,11 @@ double plm_tube_distance(const plm_foot_tube *t, const float xyz[3], double *s)
     plm_normalise(tangent);
     const double forward = plm_dot(d, tangent);
     return sqrt(fmax(plm_dot(d, d) - forward * forward, 0));
+}
+
+double plm_tube_distance(const plm_foot_tube *t, const float xyz[3], double *s)
+{
+    return distance_from(t, (const double[3]){xyz[0], xyz[1], xyz[2]}, s);
 }
 
 static uint8_t label_of(const plm_foot *p, size_t i)
@@ -199,8 +205,7 @@ static double foot_of(const plm_foot *p, const plm_foot_tube *petiole, double cl
     for (; s > clear - FOOT_BACK * p->scale->radius; s -= step) {
         double at[3], on;
         line_at(petiole, s, at);
-        const double off =
-            plm_tube_distance(&p->tube[0], (const float[3]){(float)at[0], (float)at[1], (float)at[2]}, &on);
+        const double off = distance_from(&p->tube[0], at, &on);
         if (off < deep || off > before) break;
         before = off;
     }
@@ -305,15 +310,24 @@ static void find_end(plm_foot *p)
     }
 }
 
-/* Whether the tubes hold what is called stem there, and turn from each other at the foot. */
+/* Whether the petiole turns from the stem at its foot, or begins beside the stem's line. */
+static bool is_apart(const plm_foot *p)
+{
+    const plm_foot_tube *petiole = &p->tube[1];
+    double tangent[3], at[3], on;
+    for (int a = 0; a < 3; a++) tangent[a] = petiole->along[a] + 2 * p->foot[0] * petiole->bend[a];
+    plm_normalise(tangent);
+    if (fabs(plm_dot(tangent, p->tube[0].along)) <= cos(LEAST_TURN)) return true;
+    line_at(petiole, p->foot[0], at);
+    return distance_from(&p->tube[0], at, &on) >= LEAST_BESIDE * p->blur;
+}
+
+/* Whether the tubes hold what is called stem there, and are apart. */
 static bool is_told(const plm_foot *p)
 {
     const double R = p->scale->radius, faint = plm_foot_elsewhere(p);
-    double tangent[3];
     size_t all = 0, known = 0;
-    for (int a = 0; a < 3; a++) tangent[a] = p->tube[1 + 0].along[a] + 2 * p->foot[0] * p->tube[1 + 0].bend[a];
-    plm_normalise(tangent);
-    if (fabs(plm_dot(tangent, p->tube[0].along)) > cos(LEAST_TURN)) return false;
+    if (!is_apart(p)) return false;
     if (p->is_tip && p->end < (-SEARCH_BACK + 2 * STEP) * R) return false;
     if (p->is_tip && p->end > (SEARCH_ON - 2 * STEP) * R) return false;
     for (size_t i = 0; i < p->count; i++) {

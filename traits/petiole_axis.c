@@ -15,7 +15,9 @@
 
 enum { FEWEST_POINTS = 12, MOST_POINTS = 4000, FEWEST_TUBE_POINTS = 30, MOST_SPANS = 8, BISECTIONS = 50, RING = 16 };
 
-static const double end_share = 0.02; /* points that stand for an end at the start */
+static const double least_angle = 0.03;  /* radians between petiole and stem */
+static const double shallow_angle = 0.2; /* below, the crossing alone tells no base */
+static const double end_share = 0.02;    /* points that stand for an end at the start */
 static const double radii_per_span = 25;
 static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
 static const double noise_along = 0.7;       /* share of the noise that lies along the tube */
@@ -308,14 +310,14 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 /* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
  * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
  * 1 / sin(angle) of any error of the stem's radius. Where the labels are our own what is near to the stem is called stem,
- * and the first points lie later (by 0.7 to 1.3 mm in the middle over simulated plants): of a sharp tube the crossing tells
- * alone. Without stem: the first points. */
+ * and the first points lie later (by 0.7 to 1.3 mm in the middle over simulated plants): of a sharp tube that is not nearly
+ * along the stem the crossing tells alone. Without stem: the first points. */
 static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
 {
     if (!p->stem) return first;
     const plm_axis *stem = p->stem->axis;
     const double t = plm_curve_walk(line, 0, first.position);
-    const double angle = fmax(angle_to_stem(p, line, t), 0.15);
+    const double angle = fmax(angle_to_stem(p, line, t), least_angle);
     const double half_cut = radius_at(p, t) / tan(fmax(angle, 0.35)); /* petioles bend away soon */
     const double crossing_error = (0.1 * stem->radius + 0.3 * (p->noise + stem->noise)) / sin(angle);
     const double first_error = 0.4 * half_cut + 0.2 * p->radius + 0.5 * p->noise + first.std_error;
@@ -326,7 +328,7 @@ static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
                  first_weight = 1 / (first_error * first_error);
     const double sum = crossing_weight + first_weight;
     const double behind = first.position + half_cut;
-    if (p->own && line == &p->tube.axis)
+    if (p->own && line == &p->tube.axis && angle > shallow_angle)
         return (plm_end){crossing, fmax(crossing_error, 0.25 * fabs(crossing - behind))};
     return (plm_end){(crossing_weight * crossing + first_weight * behind) / sum,
                      fmax(1 / sqrt(sum), 0.5 * fabs(crossing - behind))};

@@ -55,6 +55,7 @@ static plm_measurement measure(plm_cloud *cloud)
     plm_measure_options options;
     plm_measure_defaults(&options);
     options.traits = "stem,petiole";
+    options.up = PLM_UP_Z;
     plm_measurement plant;
     assert_ok(plm_measure(cloud, &options, &plant, &error));
     return plant;
@@ -154,6 +155,50 @@ static void a_petiole_ends_where_its_blade_begins(void **unused)
     }
     plm_measurement plant = measure(&cloud);
     assert_near(plm_degrees(find(&plant, "petiole_inclination", 0)->value), plm_degrees(atan2(0.026, 0.01)), 0.5);
+    plm_measurement_free(&plant);
+}
+
+/* A topmost petiole that goes up along the stem's side before it bends outward: where its line crosses the stem's surface is
+ * nearly anywhere, and its first points tell the base. */
+static void a_petiole_along_the_stem_begins_near_its_first_points(void **unused)
+{
+    (void)unused;
+    enum { RING = 16, RINGS = 100 };
+    const double base = 0.092, length = 0.022, before = 0.002;
+    plm_error error = {0};
+    plm_cloud cloud;
+    uint64_t state = 5;
+    static double xyz[STEM][3];
+    assert_ok(plm_cloud_create(STEM + RING * RINGS, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    const test_tube stem = {.end = {0, 0, stem_length}, .radius = {stem_radius, stem_radius}, .arc = {0, 2 * PLM_PI}};
+    test_tube_points(&stem, STEM, &state, xyz);
+    for (size_t i = 0; i < STEM; i++)
+        for (int k = 0; k < 3; k++) cloud.xyz[i][k] = (float)xyz[i][k];
+    const double beside = 1.1 * stem_radius;
+    double place[3] = {beside, 0, base - before}, end[3] = {0};
+    size_t count = STEM;
+    for (int ring = 0; ring < RINGS; ring++) {
+        const double step = (length + before) / RINGS, s = ring * step - before,
+                     turned = 0.02 + 50 * fmax(s - 0.006, 0);
+        for (int i = 0; i < RING; i++) {
+            const double angle = 2 * PLM_PI * test_uniform(&state), out = petiole_radius * cos(angle);
+            const double point[3] = {place[0] + out * cos(turned), petiole_radius * sin(angle),
+                                     place[2] - out * sin(turned)};
+            if (hypot(point[0], point[1]) < stem_radius && point[2] < stem_length) continue;
+            for (int k = 0; k < 3; k++) cloud.xyz[count][k] = (float)point[k];
+            count++;
+        }
+        memcpy(end, place, sizeof end);
+        place[0] += step * sin(turned), place[2] += step * cos(turned);
+    }
+    cloud.count = count;
+    for (size_t i = 0; i < count; i++)
+        cloud.label[i] = i < STEM ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE, cloud.organ[i] = 0;
+    plm_measurement plant = measure(&cloud);
+    const double inclination_then = plm_degrees(find(&plant, "petiole_inclination", 0)->value),
+                 truth = plm_degrees(atan2(end[0] - beside, end[2] - base));
+    print_message("inclination %.2f, in truth %.2f\n", inclination_then, truth);
+    assert_near(inclination_then, truth, 1);
     plm_measurement_free(&plant);
 }
 
@@ -294,6 +339,7 @@ int main(void)
         cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
         cmocka_unit_test(fits_tell_steps_condition_and_end),
         cmocka_unit_test(a_petiole_ends_where_its_blade_begins),
+        cmocka_unit_test(a_petiole_along_the_stem_begins_near_its_first_points),
         cmocka_unit_test(noise_is_covered_by_the_standard_errors),
         cmocka_unit_test(strays_to_all_sides_are_no_end),
         cmocka_unit_test(the_order_of_rows_does_not_matter),
