@@ -24,7 +24,7 @@ static const double ON_TUBE = 3;      /* SDs from a tube's surface: of it */
 static const double THINNEST = 0.25;  /* radius of a petiole, in the stem's, at least */
 static const double ELSEWHERE = 0.01; /* density of points, in that of the stem */
 static const double LEAST_TURN = 0.15, /* radians between stem and petiole, ... */
-    LEAST_BESIDE = 3.5;                /* ... or SDs between their lines at the foot: else they cannot be told apart */
+    LEAST_BESIDE = 3;                  /* ... or SDs between their lines at the foot: else they cannot be told apart */
 static const double CAP_SD = 0.3;      /* of the stem's radius: its end is flat or round */
 static const double LEAST_KNOWN = 0.9; /* of the stem's points are on one of the tubes */
 enum { ROUNDS = 3, FEWEST_STEM = 30 };
@@ -246,7 +246,9 @@ static bool fit_petiole(plm_foot *p, size_t which, bool first)
         if (!solve_bent(m, y[a], spread / (sd * sd), x)) return false;
         next.origin[a] = mean[a] + x[0], next.along[a] += x[1], next.bend[a] = x[2];
     }
-    plm_normalise(next.along);
+    const double stretch = plm_normalise(next.along); /* places along the line are that much farther apart */
+    for (int a = 0; a < 3; a++) next.bend[a] /= stretch * stretch;
+    low *= stretch, high *= stretch;
     next.density = (double)count / (high - low);
     double squares = 0;
     for (size_t i = 0; i < p->count; i++) {
