@@ -247,6 +247,7 @@ static bool fit_petiole(plm_foot *p, size_t which, bool first)
         next.origin[a] = mean[a] + x[0], next.along[a] += x[1], next.bend[a] = x[2];
     }
     const double stretch = plm_normalise(next.along); /* places along the line are that much farther apart */
+    if (!(stretch > 0)) return false;
     for (int a = 0; a < 3; a++) next.bend[a] /= stretch * stretch;
     low *= stretch, high *= stretch;
     next.density = (double)count / (high - low);
