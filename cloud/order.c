@@ -2,6 +2,7 @@
 #include "cloud/order.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Median of |x| / SD of a normal distribution. */
 static const double deviation_to_sd = 1.4826022185056018;
@@ -54,4 +55,15 @@ double plm_order_robust_sd(double *values, size_t count, double centre)
 {
     for (size_t i = 0; i < count; i++) values[i] = fabs(values[i] - centre);
     return deviation_to_sd * plm_order_median(values, count);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+void plm_order_sort(float *values, size_t count)
+{
+    if (count) qsort(values, count, sizeof *values, compare_floats);
 }

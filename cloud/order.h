@@ -18,4 +18,7 @@ double plm_order_median(double *values, size_t count);
  * distribution. values are overwritten. NAN for count 0. */
 double plm_order_robust_sd(double *values, size_t count, double centre);
 
+/** Sorts values, the smallest first. No NaN. */
+void plm_order_sort(float *values, size_t count);
+
 #endif

@@ -4,10 +4,10 @@
 #include "cloud/sampling.h"
 
 #include "cloud/linear.h"
+#include "cloud/order.h"
 #include "cloud/subset.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -40,15 +40,9 @@ bool plm_close_share_is_fused(double share)
     return share < fused_share;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static float median_of(float *values, size_t count)
 {
-    qsort(values, count, sizeof *values, compare_floats);
+    plm_order_sort(values, count);
     return count % 2 ? values[count / 2] : 0.5f * (values[count / 2 - 1] + values[count / 2]);
 }
 
@@ -130,7 +124,7 @@ plm_status plm_spacing_quantile(const plm_index *index, const float (*xyz)[3], s
     if (local) {
 #pragma omp parallel for schedule(static)
         for (size_t i = 0; i < taken; i++) local[i] = smooth_spacing_at(index, xyz, sample[i]);
-        qsort(local, taken, sizeof *local, compare_floats);
+        plm_order_sort(local, taken);
         *spacing = local[(size_t)fmin(share * (double)taken, (double)taken - 1)];
     }
     plm_free(local);

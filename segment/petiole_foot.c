@@ -3,13 +3,13 @@
  * the likelier of the tubes about its node (foot_tubes.c). */
 #include "segment/petiole_foot.h"
 
+#include "cloud/order.h"
 #include "segment/foot_tubes.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 #include "segment/subset.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Lengths in R. */
@@ -30,12 +30,6 @@ typedef struct blocks {
     double *near;
 } blocks;
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Where the petiole begins, going down its line: before the first gap that its density does not explain. value: scratch. */
 static double begin_of(const plm_foot *p, float *value)
 {
@@ -47,7 +41,7 @@ static double begin_of(const plm_foot *p, float *value)
             value[count++] = (float)s;
         }
     if (!count) return INFINITY;
-    qsort(value, count, sizeof *value, compare_floats);
+    plm_order_sort(value, count);
     size_t k = count / 2;
     const double gap = fmax(GAP / p->tube[1].density, LEAST_GAP * p->scale->radius);
     while (k > 0 && (double)(value[k] - value[k - 1]) < gap) k--;

@@ -5,11 +5,10 @@
 
 #include "cloud/linear.h"
 #include "cloud/neighbours.h"
+#include "cloud/order.h"
 #include "segment/ball_shape.h"
 #include "segment/scratch.h"
 #include "segment/thinning.h"
-
-#include <stdlib.h>
 
 static const double SERIES_RATIO = 1.3;
 static const double SMALLEST_SPACINGS = 5, SMALLEST_SIZE = 0.012, LARGEST_SIZE = 0.075;
@@ -28,16 +27,10 @@ static const double TUBE_DOUBTFUL = 0.06;             /* ... but for this the pe
 static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float p = *(const float *)a, q = *(const float *)b;
-    return (p > q) - (p < q);
-}
-
 float plm_quantile(float *value, size_t count, double quantile)
 {
     if (!count) return 0;
-    qsort(value, count, sizeof *value, compare_floats);
+    plm_order_sort(value, count);
     const double place = quantile * (double)(count - 1);
     const size_t low = (size_t)place, high = low + 1 < count ? low + 1 : low;
     return (float)(value[low] + (place - (double)low) * ((double)value[high] - value[low]));

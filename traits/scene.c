@@ -1,6 +1,7 @@
 /* traits/scene.c: from a cloud with labels to organs with their points side by side, indexed and with known sampling. */
 #include "traits/scene.h"
 
+#include "cloud/order.h"
 #include "traits/axis.h"
 
 #include <stdio.h>
@@ -41,12 +42,6 @@ plm_status plm_trait_failed(plm_estimate *out, const char *format, ...)
     return PLM_OK;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Median over points of the mean of a gaussian's two long axes: how far a fitted disc reaches past its centre. */
 static plm_status median_extent(const plm_cloud *cloud, const uint32_t *row, size_t count, double *extent,
                                 plm_error *error)
@@ -54,7 +49,7 @@ static plm_status median_extent(const plm_cloud *cloud, const uint32_t *row, siz
     float *mean = plm_alloc(count, sizeof *mean, error);
     if (!mean) return PLM_E_MEMORY;
     for (size_t i = 0; i < count; i++) mean[i] = 0.5f * (cloud->extent[row[i]][0] + cloud->extent[row[i]][1]);
-    qsort(mean, count, sizeof *mean, compare_floats);
+    plm_order_sort(mean, count);
     *extent = count ? mean[count / 2] : 0;
     plm_free(mean);
     return PLM_OK;

@@ -3,10 +3,10 @@
 #include "traits/traits.h"
 
 #include "cloud/neighbours.h"
+#include "cloud/order.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /** Sizes that a plant with its pot may have, metres. Taste: from a large seedling leaf to a small tree. */
@@ -18,12 +18,6 @@ static const double finest_millimetres = 0.02;
 
 enum { SAMPLE = 65536, QUERIES = 2000 };
 
-static int compare_floats(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Largest side of the box that holds all but the outer 0.5 % at each side: a floater must not change the unit. */
 static plm_status robust_size(const plm_cloud *cloud, double *size, plm_error *error)
 {
@@ -33,7 +27,7 @@ static plm_status robust_size(const plm_cloud *cloud, double *size, plm_error *e
     double largest = 0;
     for (int axis = 0; axis < 3; axis++) {
         for (size_t i = 0; i < count; i++) value[i] = cloud->xyz[i * step][axis];
-        qsort(value, count, sizeof *value, compare_floats);
+        plm_order_sort(value, count);
         largest = fmax(largest, (double)value[count - 1 - count / 200] - value[count / 200]);
     }
     plm_free(value);
@@ -55,7 +49,7 @@ static plm_status nearest_distance(const plm_cloud *cloud, double *distance, plm
             plm_index_nearest(index, cloud->xyz[i * step], 2, NULL, squared);
             value[i] = sqrtf(squared[1]);
         }
-        qsort(value, count, sizeof *value, compare_floats);
+        plm_order_sort(value, count);
         *distance = value[count / 2];
     }
     plm_free(value);

@@ -78,25 +78,23 @@ static void add_node(known_node *k, const double place[3])
     plm_stem_measure_along(stem);
 }
 
-/* Calls stem what is within a margin of the way's surface, as the sketch does, and the rest petiole. Gives the share that is right. */
-static double label_by_way(known_node *k, double margin)
-{
-    size_t right = 0;
-    for (size_t i = 0; i < k->count; i++) {
-        plm_stem_place place;
-        const double off = plm_stem_nearest(&k->sketch.stem, k->xyz[i], &place) - STEM;
-        k->label[i] = off < margin ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE;
-        k->organ[i] = 0;
-        right += k->label[i] == k->truth[i];
-    }
-    return (double)right / (double)k->count;
-}
-
 static double share_right_of_all(const known_node *k)
 {
     size_t right = 0;
     for (size_t i = 0; i < k->count; i++) right += k->label[i] == k->truth[i];
     return (double)right / (double)k->count;
+}
+
+/* Calls stem what is within a margin of the way's surface, as the sketch does, and the rest petiole. Gives the share that is right. */
+static double label_by_way(known_node *k, double margin)
+{
+    for (size_t i = 0; i < k->count; i++) {
+        plm_stem_place place;
+        const double off = plm_stem_nearest(&k->sketch.stem, k->xyz[i], &place) - STEM;
+        k->label[i] = off < margin ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE;
+        k->organ[i] = 0;
+    }
+    return share_right_of_all(k);
 }
 
 /* Share that is right of the points that are one class. */
@@ -178,7 +176,7 @@ static void a_petiole_begins_at_the_stem(void **unused)
     }
 }
 
-/* What cannot be told apart stays as it is: a petiole along the stem, and points of no number. */
+/* What cannot be told apart stays as it is: by too short a way, and by too few points. */
 static void labels_stay_where_nothing_tells(void **unused)
 {
     (void)unused;

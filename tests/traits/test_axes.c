@@ -195,10 +195,10 @@ static void a_petiole_along_the_stem_begins_near_its_first_points(void **unused)
     for (size_t i = 0; i < count; i++)
         cloud.label[i] = i < STEM ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE, cloud.organ[i] = 0;
     plm_measurement plant = measure(&cloud);
-    const double inclination_then = plm_degrees(find(&plant, "petiole_inclination", 0)->value),
+    const double found_inclination = plm_degrees(find(&plant, "petiole_inclination", 0)->value),
                  truth = plm_degrees(atan2(end[0] - beside, end[2] - base));
-    print_message("inclination %.2f, in truth %.2f\n", inclination_then, truth);
-    assert_near(inclination_then, truth, 1);
+    print_message("inclination %.2f, in truth %.2f\n", found_inclination, truth);
+    assert_near(found_inclination, truth, 1);
     plm_measurement_free(&plant);
 }
 
