@@ -12,15 +12,24 @@ static inline void plm_axis_direction(int axis, double direction[3])
     for (int i = 0; i < 3; i++) direction[i] = i == axis % 3 ? (axis < 3 ? 1 : -1) : 0;
 }
 
-/** Signs of a standing plant without ground. */
+/** Signs of a standing plant, in the order of the weights in segment/frame.c. The foot is the low point nearest to the
+ * plant's axis, the line through the median of its points. */
+enum {
+    PLM_SIGN_DETOUR, /**< mean logarithm of the way along the plant from its foot over the straight one, of points afar */
+    PLM_SIGN_TOP,    /**< height of the mean point above the middle of the height, over the height */
+    PLM_SIGN_LINES, /**< share of stems, petioles and straps that runs along the axis, 0 to 1 */
+    PLM_SIGN_FLAT,  /**< mean share of the normals along the axis, 0 to 1 */
+    PLM_SIGN_ASIDE, /**< distance of the foot from the plant's axis, over the plant's width */
+    PLM_POSTURE_SIGNS
+};
+
+/** What the plant itself says for each axis. */
 typedef struct plm_posture {
-    double along[3]; /**< share of the thick tubes' length that runs along x, y and z (sum 1); 0 without tubes */
-    double
-        foot[PLM_AXES]; /**< share of the height over which the low end is one narrow straight piece, as a bare stem */
-    double leafward[PLM_AXES]; /**< height of the other points' centroid over the tubes', over the extent */
+    bool is_known; /**< false: too few points for organs, all signs are 0 */
+    double sign[PLM_AXES][PLM_POSTURE_SIGNS];
 } plm_posture;
 
-/** Looks at a thinned, cleaned copy of the cloud. All zero for clouds that have too few points for organs. */
+/** Looks at a thinned, cleaned copy of the cloud. */
 plm_status plm_find_posture(const plm_cloud *cloud, plm_posture *posture, plm_error *error);
 
 #endif

@@ -1,23 +1,28 @@
-/* segment/posture.c: how a plant without ground shows where up is: its thick tubes run along the stem, and the stem's
- * low end is bare: one narrow straight piece, where a leaf's tip soon widens. */
+/* segment/posture.c: how a plant without ground shows where up is. From its foot all of it is reached on ways with few
+ * detours, from a leaf's tip it is not; stems, petioles and straps rise more than they spread, blades lie more than they
+ * stand; most of a plant is above the middle of its height, and its foot is beneath its middle. */
 #include <math.h>
 #include <string.h>
 
+#include "cloud/neighbours.h"
 #include "segment/ball_shape.h"
 #include "segment/frame.h"
 #include "segment/scale.h"
+#include "segment/scratch.h"
 #include "segment/segment.h"
 #include "segment/subset.h"
 #include "segment/thinning.h"
 
-enum { ENOUGH = 200000, BUDGET = 8000, SLABS = 50, FEWEST = 60 };
+enum { ENOUGH = 200000, BUDGET = 8000, FEWEST = 60, NEIGHBOURS = 10, FOURTH = 4 };
 
-static const double stray = 0.002;   /* share of the points beyond the ends */
-static const double narrow = 0.15;   /* width of a stem's slab over the plant's */
-static const double sidestep = 0.08; /* of a slab against the one below, over the plant's width */
-static const double ball_cells = 5;  /* as in segment/scale.c */
-static const double linearity = 0.45, roundness = 0.6, thick = 0.75; /* a thick tube; as in segment/scale.c */
-
+static const double stray = 0.002; /* share of the points beyond the ends */
+static const double low_end =
+    0.2; /* of the height: of the points there, the foot is the one nearest to the plant's axis */
+static const double apart = 0.15;       /* of the size: ways that count are longer */
+static const double no_way = 1;         /* stands for the logarithm of a way that there is none of */
+static const double link = 4, ball = 7; /* spacings: longest links of the graph, radius of what shapes are taken from */
+static const double bridge = 0.1;       /* of the size: longest link between pieces of the graph, over gaps of a scan */
+static const double linearity = 0.45;   /* of a stem, a petiole or a strap; as in segment/scale.c */
 /* A thinned copy of the cloud without its floaters. The caller frees it. */
 static plm_status thin_and_clean(const plm_cloud *cloud, plm_cloud *copy, plm_error *error)
 {
@@ -50,118 +55,125 @@ static plm_status thin_and_clean(const plm_cloud *cloud, plm_cloud *copy, plm_er
     return status;
 }
 
-/* ---- Tubes ---------------------------------------------------------------------------------------------------- */
+typedef struct look {
+    plm_scratch scratch;
+    size_t count;
+    const float (*xyz)[3];
+    plm_graph graph;
+    plm_ball_shape *shape;
+    float *height, *value, *distance;
+    double size;
+} look;
 
-static void add_tubes(const plm_ball_shape *shape, const float (*xyz)[3], size_t count, double stem_radius,
-                      plm_posture *posture)
+/* The median distance to the fourth neighbour, which voxels that fall together or apart change less than that to the first. */
+static plm_status find_spacing(const look *l, double *spacing, plm_error *error)
 {
-    double sum[3] = {0}, total = 0, tube[3] = {0}, other[3] = {0}, tubes = 0, low[3], high[3];
-    for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        const float *l = shape[i].value;
-        const double radius = sqrt((double)l[1] + l[2]);
-        const bool is_tube = l[1] > 0 && 1 - sqrt(l[1] / l[0]) > linearity && sqrt(l[2] / l[1]) > roundness &&
-                             radius > thick * stem_radius && radius < 2 * stem_radius;
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], xyz[i][a]), high[a] = fmax(high[a], xyz[i][a]);
-            (is_tube ? tube : other)[a] += xyz[i][a];
-            if (is_tube) sum[a] += (double)shape[i].axis[a] * shape[i].axis[a] / radius;
-        }
-        if (is_tube) total += 1 / radius, tubes++; /* patches of equal area: length goes with 1 / radius */
-    }
-    if (!(tubes > 0)) return;
-    for (int a = 0; a < 3; a++) {
-        posture->along[a] = sum[a] / total;
-        if (tubes >= (double)count || !(high[a] > low[a])) continue;
-        posture->leafward[a] = (other[a] / ((double)count - tubes) - tube[a] / tubes) / (high[a] - low[a]);
-        posture->leafward[a + 3] = -posture->leafward[a];
-    }
-}
-
-static plm_status find_tubes(const float (*xyz)[3], size_t count, plm_posture *posture, plm_error *error)
-{
-    plm_scale scale;
-    plm_thinned thinned = {0};
-    plm_graph graph = {0};
-    plm_ball_shape *shape = NULL;
-    plm_status status = plm_find_scale(xyz, count, &scale, error);
-    if (status == PLM_E_DEGENERATE) return PLM_OK;
-    if (status != PLM_OK || !scale.has_tubes) return status;
-    const double cell = scale.radius / ball_cells;
-    status = plm_thin(xyz, count, cell, &thinned, error);
-    if (status == PLM_OK)
-        status = plm_graph_build((const float(*)[3])thinned.xyz, thinned.count, 10, 2.3 * cell, &graph, error);
-    if (status == PLM_OK) {
-        shape = plm_alloc(thinned.count, sizeof *shape, error);
-        status = shape ? plm_ball_shapes(&graph, scale.radius, shape, error) : PLM_E_MEMORY;
-    }
-    if (status == PLM_OK) add_tubes(shape, (const float(*)[3])thinned.xyz, thinned.count, scale.stem_radius, posture);
-    plm_free(shape);
-    plm_graph_free(&graph);
-    plm_thinned_free(&thinned);
+    float *squared = plm_alloc(l->count * FOURTH, sizeof *squared, error);
+    if (!squared) return PLM_E_MEMORY;
+    const plm_status status = plm_neighbour_table(l->xyz, l->count, FOURTH, NULL, squared, error);
+    for (size_t i = 0; i < l->count && status == PLM_OK; i++) l->value[i] = squared[i * FOURTH + FOURTH - 1];
+    *spacing = sqrt(plm_quantile(l->value, l->count, 0.5));
+    plm_free(squared);
     return status;
 }
 
-/* ---- Foot ----------------------------------------------------------------------------------------------------- */
-
-/* Width of the slab [begin, end) of points sorted by height, and its middle: medians across, and twice the distance
- * from there within which nine in ten lie. */
-static double slab_width(const float (*xyz)[3], const uint32_t *order, size_t begin, size_t end, const int across[2],
-                         float *value, double middle[2])
+static plm_status look_start(look *l, const plm_cloud *cloud, plm_error *error)
 {
-    const size_t n = end - begin;
-    for (int c = 0; c < 2; c++) {
-        for (size_t i = 0; i < n; i++) value[i] = xyz[order[begin + i]][across[c]];
-        middle[c] = plm_quantile(value, n, 0.5);
+    *l = (look){.scratch = {.error = error}, .count = cloud->count, .xyz = (const float(*)[3])cloud->xyz};
+    l->shape = plm_scratch_take(&l->scratch, l->count, sizeof *l->shape);
+    l->height = plm_scratch_take(&l->scratch, l->count, sizeof *l->height);
+    l->value = plm_scratch_take(&l->scratch, l->count, sizeof *l->value);
+    l->distance = plm_scratch_take(&l->scratch, l->count, sizeof *l->distance);
+    if (l->scratch.failed) return PLM_E_MEMORY;
+    for (int a = 0; a < 3; a++) {
+        for (size_t i = 0; i < l->count; i++) l->value[i] = l->xyz[i][a];
+        const double low = plm_quantile(l->value, l->count, stray); /* sorts */
+        l->size = hypot(l->size, plm_quantile(l->value, l->count, 1 - stray) - low);
     }
-    for (size_t i = 0; i < n; i++) {
-        const float *p = xyz[order[begin + i]];
-        value[i] = (float)hypot(p[across[0]] - middle[0], p[across[1]] - middle[1]);
-    }
-    return 2 * (double)plm_quantile(value, n, 0.9);
+    double spacing;
+    plm_status status = find_spacing(l, &spacing, error);
+    if (status == PLM_OK) status = plm_graph_build(l->xyz, l->count, NEIGHBOURS, link * spacing, &l->graph, error);
+    if (status == PLM_OK) status = plm_graph_join(&l->graph, spacing, bridge * l->size, error);
+    return status == PLM_OK ? plm_ball_shapes(&l->graph, ball * spacing, l->shape, error) : status;
 }
 
-static double foot_length(const float (*xyz)[3], size_t count, int axis, uint32_t *order, float *value)
+/* Along which axes lines run and to which sheets are normal; alike for both directions of an axis. */
+static void look_at_shapes(const look *l, plm_posture *posture)
 {
-    const int along = axis % 3, across[2] = {(along + 1) % 3, (along + 2) % 3};
-    const double sign = axis < 3 ? 1 : -1;
-    double width = 0, before[2] = {0};
+    double lines[3] = {0}, flat[3] = {0}, total = 0;
+    for (size_t i = 0; i < l->count; i++) {
+        const plm_ball_shape *s = &l->shape[i];
+        const double linear = s->value[0] > 0 ? 1 - sqrt((double)s->value[1] / s->value[0]) : 0;
+        for (int a = 0; a < 3; a++) {
+            flat[a] += fabs((double)s->normal[a]);
+            if (linear > linearity) lines[a] += linear * s->axis[a] * s->axis[a];
+        }
+        if (linear > linearity) total += linear;
+    }
+    for (int axis = 0; axis < PLM_AXES; axis++) {
+        posture->sign[axis][PLM_SIGN_LINES] = total > 0 ? lines[axis % 3] / total : 0;
+        posture->sign[axis][PLM_SIGN_FLAT] = flat[axis % 3] / (double)l->count;
+    }
+}
+
+/* Mean logarithm of the way along the graph from the foot over the straight one, of points that are not near the foot. */
+static plm_status find_detour(look *l, uint32_t foot, double *detour, plm_error *error)
+{
+    const plm_walk walk = {.source = &foot, .source_count = 1, .distance = l->distance};
+    const plm_status status = plm_graph_walk(&l->graph, &walk, error);
+    double sum = 0, far = 0;
+    for (size_t i = 0; i < l->count && status == PLM_OK; i++) {
+        double straight = 0;
+        for (int a = 0; a < 3; a++) straight = hypot(straight, (double)l->xyz[i][a] - l->xyz[foot][a]);
+        if (!(straight > apart * l->size)) continue;
+        sum += isfinite(l->distance[i]) ? log(l->distance[i] / straight) : no_way;
+        far++;
+    }
+    *detour = far > 0 ? sum / far : no_way;
+    return status;
+}
+
+/* The signs of one direction of an axis. */
+static plm_status look_along(look *l, int axis, double sign[PLM_POSTURE_SIGNS], plm_error *error)
+{
+    const int across[2] = {(axis + 1) % 3, (axis + 2) % 3};
+    double sum = 0, middle[2], width = 0, nearest = INFINITY;
+    for (size_t i = 0; i < l->count; i++) {
+        l->height[i] = (axis < 3 ? 1 : -1) * l->xyz[i][axis % 3];
+        l->value[i] = l->height[i];
+        sum += l->height[i];
+    }
+    const double low = plm_quantile(l->value, l->count, stray), high = plm_quantile(l->value, l->count, 1 - stray);
+    sign[PLM_SIGN_DETOUR] = no_way; /* if the plant has no extent along the axis */
+    if (!(high > low)) return PLM_OK;
+    sign[PLM_SIGN_TOP] = (sum / (double)l->count - (low + high) / 2) / (high - low);
     for (int c = 0; c < 2; c++) {
-        for (size_t i = 0; i < count; i++) value[i] = xyz[i][across[c]];
-        const double low = plm_quantile(value, count, 0.01); /* sorts */
-        width = hypot(width, plm_quantile(value, count, 0.99) - low);
+        for (size_t i = 0; i < l->count; i++) l->value[i] = l->xyz[i][across[c]];
+        middle[c] = plm_quantile(l->value, l->count, 0.5); /* sorts */
+        const double left = plm_quantile(l->value, l->count, 0.01);
+        width = hypot(width, plm_quantile(l->value, l->count, 0.99) - left);
     }
-    for (size_t i = 0; i < count; i++) value[i] = (float)(sign * xyz[i][along]);
-    const double low = plm_quantile(value, count, stray), high = plm_quantile(value, count, 1 - stray);
-    if (!(high > low)) return 0;
-    size_t first[SLABS + 1] = {0}, place[SLABS];
-    for (int turn = 0; turn < 2; turn++) { /* counting sort by slab */
-        for (size_t i = 0; i < count; i++) {
-            const double b = floor((sign * xyz[i][along] - low) / (high - low) * SLABS);
-            if (!(b >= 0 && b < SLABS)) continue;
-            if (turn == 0)
-                first[(int)b + 1]++;
-            else
-                order[place[(int)b]++] = (uint32_t)i;
-        }
-        for (int b = 0; b < SLABS && turn == 0; b++) {
-            first[b + 1] += first[b];
-            place[b] = first[b];
-        }
+    uint32_t foot = 0;
+    for (uint32_t i = 0; i < l->count; i++) {
+        if (!(l->height[i] < low + low_end * (high - low))) continue;
+        const double off = hypot(l->xyz[i][across[0]] - middle[0], l->xyz[i][across[1]] - middle[1]);
+        if (off < nearest) nearest = off, foot = i;
     }
-    int slabs = 0;
-    bool started = false;
-    for (int b = 0; b < SLABS; b++) {
-        double middle[2];
-        if (first[b + 1] - first[b] >= 2) {
-            if (slab_width(xyz, order, first[b], first[b + 1], across, value, middle) > narrow * width) break;
-            if (started && hypot(middle[0] - before[0], middle[1] - before[1]) > sidestep * width) break;
-            memcpy(before, middle, sizeof before);
-            started = true;
-        }
-        slabs += started;
-    }
-    return (double)slabs / SLABS;
+    if (width > 0) sign[PLM_SIGN_ASIDE] = nearest / width;
+    return find_detour(l, foot, &sign[PLM_SIGN_DETOUR], error);
+}
+
+static plm_status look_at(const plm_cloud *copy, plm_posture *posture, plm_error *error)
+{
+    look l;
+    plm_status status = look_start(&l, copy, error);
+    if (status == PLM_OK) look_at_shapes(&l, posture);
+    for (int axis = 0; axis < PLM_AXES && status == PLM_OK; axis++)
+        status = look_along(&l, axis, posture->sign[axis], error);
+    plm_graph_free(&l.graph);
+    plm_scratch_free(&l.scratch, NULL);
+    posture->is_known = status == PLM_OK;
+    return status;
 }
 
 plm_status plm_find_posture(const plm_cloud *cloud, plm_posture *posture, plm_error *error)
@@ -169,16 +181,7 @@ plm_status plm_find_posture(const plm_cloud *cloud, plm_posture *posture, plm_er
     plm_posture found = {0};
     plm_cloud copy = {0};
     plm_status status = cloud->count < FEWEST ? PLM_OK : thin_and_clean(cloud, &copy, error);
-    const float(*xyz)[3] = (const float(*)[3])copy.xyz;
-    if (status == PLM_OK && copy.count >= FEWEST) {
-        uint32_t *order = plm_alloc(copy.count, sizeof *order, error);
-        float *value = plm_alloc(copy.count, sizeof *value, error);
-        status = order && value ? find_tubes(xyz, copy.count, &found, error) : PLM_E_MEMORY;
-        for (int axis = 0; axis < PLM_AXES && status == PLM_OK; axis++)
-            found.foot[axis] = foot_length(xyz, copy.count, axis, order, value);
-        plm_free(order);
-        plm_free(value);
-    }
+    if (status == PLM_OK && copy.count >= FEWEST) status = look_at(&copy, &found, error);
     plm_cloud_free(&copy);
     if (status == PLM_OK) *posture = found;
     return status;

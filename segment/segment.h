@@ -27,14 +27,14 @@ typedef struct plm_frame {
     double rotation[3][3]; /**< rows are the plant's x, y and z (zenith) axes in the cloud's axes: proper rotation */
     plm_up up;             /**< the axis, PLM_UP_AUTO when zenith is none of the six */
     double confidence;     /**< 0 to 1; 1 when the caller said it */
-    const char *evidence;  /**< "given", "ground", "tubes", "default", ...: static text */
+    const char *evidence;  /**< "given", "ground", "posture", "default", ...: static text */
 } plm_frame;
 
-/** Finds zenith. up other than PLM_UP_AUTO is taken as it is. AUTO asks the ground (soil, pot, table), then the direction
- * of stems, and settles on the nearest of the six axes, as files are nearly always axis-aligned: a tilted frame would
- * spoil every angle. Only ground that is tilted by more than 25 degrees against all axes gives another direction. Where
- * neither is clear, z ("default"): rosettes and heads without ground, single leaves. PLM_E_DEGENERATE for an empty
- * cloud. */
+/** Finds zenith. up other than PLM_UP_AUTO is taken as it is. AUTO asks the ground (soil, pot, table), then how the plant
+ * stands ("posture"), and settles on the nearest of the six axes, as files are nearly always axis-aligned: a tilted frame
+ * would spoil every angle. Only ground that is tilted by more than 25 degrees against all axes gives another direction.
+ * Where neither is clear, z ("default", confidence 0.3 at most): single leaves, heads, some rosettes. PLM_E_DEGENERATE for
+ * an empty cloud. */
 PLM_API plm_status plm_find_up(const plm_cloud *cloud, plm_up up, plm_frame *frame, plm_error *error);
 
 /** Turns a cloud (coordinates, normals) into the frame, in place; the origin is turned too. */
