@@ -102,7 +102,9 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
     double largest_other = 0;
     for (int j = 0; j < levels; j++)
         if (j != i && !same_surface(t, it, &level[j])) largest_other = fmax(largest_other, level[j].area);
-    const double rough = it->scatter / sqrt(it->area), ease = colour > 0 ? 1.5 : 1;
+    /* The young leaves at a flat rosette's middle are greener than the others, between which there are gaps. */
+    const bool has_gaps = it->area < 0.85 * it->hull_area;
+    const double rough = it->scatter / sqrt(it->area), ease = colour > 0 && !has_gaps ? 1.5 : 1;
     if (sqrt(it->area) < 12 * t->surfels->cell) return 0;
     /* Where the normals agree well the roughness is noise, not shape. */
     if (rough > (it->agreement > 0.99 ? 0.05 : colour < 0 ? 0.02 : 0.025 * ease)) return 0;

@@ -16,13 +16,14 @@
 enum { ENOUGH = 200000, BUDGET = 8000, FEWEST = 60, NEIGHBOURS = 10, FOURTH = 4 };
 
 static const double stray = 0.002; /* share of the points beyond the ends */
-static const double low_end =
-    0.2; /* of the height: of the points there, the foot is the one nearest to the plant's axis */
+/* Of the height: of the points so low, the foot is the one nearest to the axis. */
+static const double low_end = 0.2;
 static const double apart = 0.15;       /* of the size: ways that count are longer */
 static const double no_way = 1;         /* stands for the logarithm of a way that there is none of */
 static const double link = 4, ball = 7; /* spacings: longest links of the graph, radius of what shapes are taken from */
 static const double bridge = 0.1;       /* of the size: longest link between pieces of the graph, over gaps of a scan */
 static const double linearity = 0.45;   /* of a stem, a petiole or a strap; as in segment/scale.c */
+
 /* A thinned copy of the cloud without its floaters. The caller frees it. */
 static plm_status thin_and_clean(const plm_cloud *cloud, plm_cloud *copy, plm_error *error)
 {

@@ -5,6 +5,7 @@
 #include "io/io.h"
 #include "segment/segment.h"
 #include "support/scene.h"
+#include "support/virtual_plant.h"
 
 static const test_scene plain = {
     .points = 200000, .leaf_length = 0.35, .noise = 0.001, .outliers = 0.004, .spacing = 0.007, .seed = 5};
@@ -115,6 +116,18 @@ static void plants_without_ground_claim_none(void **unused)
     test_scene s = plain;
     s.leaf_length = 0;
     assert_false(find_in(&s).ground.found); /* a bare stem */
+}
+
+/* A rosette so flat that it passes for rough soil, with young leaves of another green at its middle. */
+static void a_flat_rosette_is_no_ground(void **unused)
+{
+    (void)unused;
+    const plm_scan_options scan = {
+        .scanner = PLM_SCANNER_UNIFORM, .seed = 764, .points = 8000, .noise = 0.0005, .outliers = 0.005};
+    virtual_plant made = virtual_plant_make("arabidopsis", 1, &scan);
+    const outcome o = find(&made.scan.cloud);
+    assert_false(o.ground.found);
+    virtual_plant_free(&made);
 }
 
 static void colour_is_not_needed_and_not_trusted(void **unused)
@@ -273,6 +286,7 @@ int main(void)
         cmocka_unit_test(soil_without_a_pot_is_found),
         cmocka_unit_test(a_rosette_over_the_rim_stays_a_plant),
         cmocka_unit_test(plants_without_ground_claim_none),
+        cmocka_unit_test(a_flat_rosette_is_no_ground),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),
