@@ -33,8 +33,8 @@ typedef struct plm_frame {
 /** Finds zenith. up other than PLM_UP_AUTO is taken as it is. AUTO asks the ground (soil, pot, table), then how the plant
  * stands ("posture"), and settles on the nearest of the six axes, as files are nearly always axis-aligned: a tilted frame
  * would spoil every angle. Only ground that is tilted by more than 25 degrees against all axes gives another direction.
- * Where neither is clear, z ("default", confidence 0.3 at most): single leaves, heads, some rosettes. PLM_E_DEGENERATE for
- * an empty cloud. */
+ * Where neither is clear, z ("default", confidence 0.3 at most): single leaves, some plants upside down. PLM_E_DEGENERATE
+ * for an empty cloud. */
 PLM_API plm_status plm_find_up(const plm_cloud *cloud, plm_up up, plm_frame *frame, plm_error *error);
 
 /** Turns a cloud (coordinates, normals) into the frame, in place; the origin is turned too. */

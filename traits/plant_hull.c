@@ -207,7 +207,7 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
                  disc = f.disc * scene->sampling.extent * m->area;
     const double rims = f.smooth > 0 && shell > 0 ? deficit / (deficit + f.smooth * shell) : 1;
     const double per_volume = m->volume > 0 ? m->area / m->volume : 0;
-    const double share = noisy ? sigma * per_volume : 0; /* of the volume, in noise */
+    const double share = sigma * per_volume; /* of the volume, in noise */
     const double thickened = f.thin * share * shell / (1 + f.thin_levels * share);
     scene->hull_volume = m->volume + f.deficit * deficit - rims * (f.noise * shell + thickened) + disc;
     scene->hull_volume_error =
