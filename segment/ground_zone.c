@@ -31,10 +31,10 @@ static bool on_table_level(const void *context, const double p[3])
            plm_pot_distance(pot, p) > plm_pot_radius(pot, p[2]) + 1.5 * m->cell;
 }
 
-/* A point of the surface lies within 2.2 sigma (97 %) of its relief. */
+/* A point of the surface lies within 2.2 sigma (97 %) of its relief; bumps smaller than its cells, within a part of a voxel. */
 static double slack_of(const plm_marker *m, const plm_relief *relief)
 {
-    return fmax(2.2 * relief->sigma, 0.1 * m->cell);
+    return fmax(2.2 * relief->sigma, 0.3 * m->cell);
 }
 
 static plm_status fit_reliefs(plm_marker *m, plm_error *error)

@@ -11,7 +11,7 @@ static const test_scene plain = {
     .points = 200000, .leaf_length = 0.35, .noise = 0.001, .outliers = 0.004, .spacing = 0.007, .seed = 5};
 
 typedef struct outcome {
-    double iou, kept; /* of ground; share of the plant's points that stay */
+    double iou, kept, left; /* of ground; share of the plant's points that stay, and of the ground's */
     plm_ground ground;
 } outcome;
 
@@ -21,17 +21,19 @@ static outcome find(const plm_cloud *cloud)
     outcome o = {0};
     uint8_t *label = calloc(cloud->count + 1, 1);
     assert_ok(plm_find_ground(cloud, PLM_GROUND_AUTO, 0, label, &o.ground, &error));
-    double both = 0, either = 0, plant = 0, kept = 0;
+    double both = 0, either = 0, plant = 0, kept = 0, ground = 0;
     for (size_t i = 0; i < cloud->count; i++) {
         const bool truth = cloud->label[i] == PLM_LABEL_GROUND, said = label[i] == PLM_LABEL_GROUND;
         if (cloud->label[i] == PLM_LABEL_OTHER) continue; /* strays near the ground have no right answer */
         both += truth && said;
         either += truth || said;
         plant += !truth;
+        ground += truth;
         kept += !truth && !said;
     }
     o.iou = either > 0 ? both / either : 1;
     o.kept = plant > 0 ? kept / plant : 1;
+    o.left = ground > 0 ? 1 - both / ground : 0;
     free(label);
     return o;
 }
@@ -128,6 +130,34 @@ static void a_flat_rosette_is_no_ground(void **unused)
     const outcome o = find(&made.scan.cloud);
     assert_false(o.ground.found);
     virtual_plant_free(&made);
+}
+
+/* The bumps of fine soil stick out of its relief where there is no noise: as stems and leaves they would be the plant's, with
+ * colours that tell plant and soil apart and without. */
+static void bumps_of_soil_are_soil(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *kind;
+        uint64_t seed;
+        double left; /* 0.0088 of the pepper's before bumps were looked at */
+    } scene[] = {{"pepper", 5027, 0.001}, {"arabidopsis", 6051, 0.001}, {"arabidopsis", 6050, 0.0005}};
+    for (size_t i = 0; i < COUNT(scene); i++) {
+        plm_error error = {0};
+        plm_virtual_plant plant;
+        plm_scan scan;
+        const plm_scan_options options = {
+            .scanner = PLM_SCANNER_UNIFORM, .seed = scene[i].seed, .points = 20000, .has_table = true};
+        assert_ok(plm_plant_grow(scene[i].kind, &(plm_plant_options){.seed = scene[i].seed}, &plant, &error));
+        assert_ok(plm_scan_plant(&plant, &options, &scan, &error));
+        const outcome o = find(&scan.cloud);
+        print_message("%s %d: %.4f of the ground left, %.4f of the plant kept\n", scene[i].kind, (int)scene[i].seed,
+                      o.left, o.kept);
+        assert_true(o.ground.found && o.kept > 0.995);
+        assert_true(o.left < scene[i].left);
+        plm_scan_free(&scan);
+        plm_virtual_plant_free(&plant);
+    }
 }
 
 static void colour_is_not_needed_and_not_trusted(void **unused)
@@ -287,6 +317,7 @@ int main(void)
         cmocka_unit_test(a_rosette_over_the_rim_stays_a_plant),
         cmocka_unit_test(plants_without_ground_claim_none),
         cmocka_unit_test(a_flat_rosette_is_no_ground),
+        cmocka_unit_test(bumps_of_soil_are_soil),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),

@@ -224,9 +224,25 @@ static void blades_on_one_foot_are_leaflets(void **unused)
           &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 102, .points = 45000, .noise = 5e-4}, 1, 0.94);
 }
 
+/* The balls that suit the stem are large for the rachises of these tomatoes, which then look as thick as it: straps with five
+ * blades a leaf. */
+static void many_blades_a_leaf_are_no_straps(void **unused)
+{
+    (void)unused;
+    plm_habit habit;
+    const label_score score = segment(
+        "tomato", 5069, &(plm_scan_options){.scanner = PLM_SCANNER_UNIFORM, .seed = 5069, .points = 135442}, &habit);
+    assert_int_equal(habit, PLM_HABIT_COMPOUND);
+    assert_true(score.f1 >= 0.95 && score.iou_mean >= 0.9);
+    segment("tomato_large", 5200, &(plm_scan_options){.scanner = PLM_SCANNER_UNIFORM, .seed = 5200, .points = 60000},
+            &habit);
+    assert_int_equal(habit, PLM_HABIT_COMPOUND);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
+                                       cmocka_unit_test(many_blades_a_leaf_are_no_straps),
                                        cmocka_unit_test(blades_that_touch_keep_their_feet),
                                        cmocka_unit_test(a_tip_on_a_blade_is_a_leaf),
                                        cmocka_unit_test(noise_joins_no_blades),
