@@ -2,8 +2,8 @@
 .DEFAULT_GOAL := help
 .PHONY: help packages build demo test reduced asan fuzz floating bench docs format tidy clean
 JOBS ?= $(shell nproc)
-# Goals that `make bench` measures: BENCH=all, BENCH=P1,P9, BENCH=accuracy (errors of the traits) or BENCH=growth (time and
-# memory of the stages over the number of points); BENCH_CSV=FILE.csv appends the rows to a file and draws it over the commits.
+# Goals that `make bench` measures: BENCH=all, BENCH=P1,P9, BENCH=accuracy (errors of the traits), BENCH=scenes (organs found in
+# scenes drawn at random) or BENCH=growth (time and memory of the stages over the number of points); BENCH_CSV=FILE.csv appends the rows to a file and draws it over the commits.
 BENCH ?= P1,P9,P10,P12
 BENCH_CSV ?=
 # Seconds that each fuzz target runs in `make fuzz`.
