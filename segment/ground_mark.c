@@ -1,6 +1,6 @@
 /* segment/ground_mark.c: the order of marking. Shape first; then points at a surface that have the plant's colour go
  * back to the plant, if colour tells the two apart at all; then pieces that are left around pot and soil go to the
- * ground; then the foot of the stem goes back to the plant. */
+ * ground; then the foot of the stem goes back to the plant; then bumps of the soil go to the ground. */
 #include "segment/ground_mark.h"
 
 #include <math.h>
@@ -52,6 +52,7 @@ static plm_status mark(plm_marker *m, plm_ground_marks *marks, plm_error *error)
     status = plm_ground_leftovers(m, colour ? share : NULL, error);
     if (status == PLM_OK && m->has_soil) {
         status = plm_ground_foot(m, colour ? share : NULL, marks->foot, error);
+        if (status == PLM_OK) status = plm_ground_bumps(m, colour ? share : NULL, error);
         marks->foot[2] = -plm_relief_over(&m->soil, (const double[3]){marks->foot[0], marks->foot[1], 0});
     }
     return status;

@@ -1,6 +1,6 @@
 /* segment/ground_pieces.c: what shape and colour leave open is settled by what hangs together. Pieces along the ground
  * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground; soil points at the foot of
- * something that stands are its foot. */
+ * something that stands are its foot; what is left of bumps where nothing stands is soil. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -8,11 +8,9 @@
 
 enum { FOOT_LAYERS = 4, FILLED = (1 << FOOT_LAYERS) - 1, GROUND = -1, OPEN = -2, JOIN = 2 };
 
-static const float SOIL_SHARE = 0.2f; /* of the plant among the points of a colour: less is the soil's */
-static const float PLANT_SHARE =
-    0.5f; /* more of the plant among the points of a colour: a bump of the soil has another */
-static const double BUMP =
-    0.25; /* cells beyond the slack that bumps reach, which are smaller than the relief's cells */
+static const float SOIL_SHARE = 0.2f;  /* of the plant among the points of a colour: less is the soil's */
+static const float PLANT_SHARE = 0.5f; /* more: no bump of the soil */
+static const double BUMP = 0.25;       /* voxels beyond the slack that bumps and the tail of the noise reach */
 /* Points of other colours per point of the soil's about a foot: 0.2 and more under stems, 0.03 and less under rosettes. */
 static const double ROOTED = 0.1;
 
@@ -150,7 +148,7 @@ static void fill_layers(const plm_marker *m, double layer, uint8_t *layers)
     }
 }
 
-/* Gives the foot its points back, if it has one: where all layers are filled. */
+/* Gives the foot its points back, where all layers are filled. */
 static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double layer, double foot[2])
 {
     double sum[2] = {0}, n = 0, soil = 0, other = 0;
@@ -171,37 +169,6 @@ static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *la
     for (int i = 0; i < 2 && n > 0; i++) foot[i] = sum[i] / n;
 }
 
-/* Does anything stand on the cell of the floor or beside it? */
-static bool is_by_foot(const plm_stand *t, const uint8_t *layers, int64_t cell)
-{
-    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
-    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
-        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++)
-            if (layers[a * high + b] == FILLED) return true;
-    return false;
-}
-
-/* Bumps that are smaller than the cells of the relief stick out of it where there is less noise than that. Where nothing
- * stands, such points are soil as well if they have its colour or most of their patch is ground. */
-static plm_status take_bumps(plm_marker *m, const float *plant_share, const uint8_t *layers, plm_error *error)
-{
-    const plm_stand *t = &m->scene->stand;
-    size_t *ground = plm_alloc_zero(t->surfels->count + 1, sizeof *ground, error);
-    if (!ground) return PLM_E_MEMORY;
-    for (size_t i = 0; i < m->cloud->count; i++)
-        if (m->patch[i] >= 0) ground[m->patch[i]] += m->zone[i] != PLM_ZONE_FREE;
-    for (size_t i = 0; i < m->cloud->count; i++) {
-        const int32_t k = m->patch[i];
-        if (m->zone[i] != PLM_ZONE_FREE || k < 0 || !((double)m->over[i] <= m->soil_slack + BUMP * m->cell)) continue;
-        const float share = plant_share ? plant_share[plm_shade(m->cloud->rgb[i])] : SOIL_SHARE;
-        if (share > PLANT_SHARE || (share >= SOIL_SHARE && 2 * ground[k] <= (size_t)t->surfels->points[k])) continue;
-        const int64_t c = foot_cell(t, m->place[i]);
-        if (c >= 0 && !is_by_foot(t, layers, c)) m->zone[i] = PLM_ZONE_NEAR;
-    }
-    plm_free(ground);
-    return PLM_OK;
-}
-
 /* Where free points fill all layers over the soil, something stands. If nearly all below them has the soil's colour, it
  * stands over the soil, not in it: the petioles of a rosette, which need no foot. */
 plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[2], plm_error *error)
@@ -212,7 +179,47 @@ plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[
     const double layer = 0.75 * m->cell;
     fill_layers(m, layer, layers);
     free_foot(m, plant_share, layers, layer, foot);
-    const plm_status status = take_bumps(m, plant_share, layers, error);
     plm_free(layers);
-    return status;
+    return PLM_OK;
+}
+
+/* ---- Bumps ---------------------------------------------------------------------------------------------------- */
+
+/* Does anything stand on the cell of the floor or beside it? */
+static bool is_by_foot(const plm_stand *t, const uint8_t *layers, int64_t cell)
+{
+    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
+    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
+        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++)
+            if (layers[a * high + b] == FILLED) return true;
+    return false;
+}
+
+/* May a free point be soil, by its height, its colour (if that tells) and what else its patch holds? */
+static bool is_like_soil(const plm_marker *m, size_t i, const float *plant_share, const size_t *ground)
+{
+    const float share = plant_share ? plant_share[plm_shade(m->cloud->rgb[i])] : SOIL_SHARE;
+    if (!((double)m->over[i] <= m->soil_slack + BUMP * m->cell) || share > PLANT_SHARE) return false;
+    return share < SOIL_SHARE || 2 * ground[m->patch[i]] > m->scene->stand.surfels->points[m->patch[i]];
+}
+
+/* Where there is little noise, bumps of the soil that are smaller than the relief's cells stick out of it, and where there is
+ * much, its tail does. Where nothing stands, such points are soil if they have its colour or most of their patch is ground. */
+plm_status plm_ground_bumps(plm_marker *m, const float *plant_share, plm_error *error)
+{
+    const plm_stand *t = &m->scene->stand;
+    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
+    size_t *ground = plm_alloc_zero(t->surfels->count + 1, sizeof *ground, error);
+    const bool room = layers && ground;
+    if (room) fill_layers(m, 0.75 * m->cell, layers);
+    for (size_t i = 0; room && i < m->cloud->count; i++)
+        if (m->patch[i] >= 0) ground[m->patch[i]] += m->zone[i] != PLM_ZONE_FREE;
+    for (size_t i = 0; room && i < m->cloud->count; i++) {
+        if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0 || !is_like_soil(m, i, plant_share, ground)) continue;
+        const int64_t c = foot_cell(t, m->place[i]);
+        if (c >= 0 && !is_by_foot(t, layers, c)) m->zone[i] = PLM_ZONE_NEAR;
+    }
+    plm_free(ground);
+    plm_free(layers);
+    return room ? PLM_OK : PLM_E_MEMORY;
 }

@@ -31,10 +31,12 @@ static bool on_table_level(const void *context, const double p[3])
            plm_pot_distance(pot, p) > plm_pot_radius(pot, p[2]) + 1.5 * m->cell;
 }
 
-/* A point of the surface lies within 2.2 sigma (97 %) of its relief; bumps smaller than its cells, within a part of a voxel. */
-static double slack_of(const plm_marker *m, const plm_relief *relief)
+/* A point of the surface lies within 2.2 sigma (97 %) of its relief, or so many voxels; tables have fewer bumps than soil. */
+static const double SOIL_BUMP = 0.3, TABLE_BUMP = 0.1;
+
+static double slack_of(const plm_relief *relief, double bump)
 {
-    return fmax(2.2 * relief->sigma, 0.3 * m->cell);
+    return fmax(2.2 * relief->sigma, bump);
 }
 
 static plm_status fit_reliefs(plm_marker *m, plm_error *error)
@@ -49,14 +51,14 @@ static plm_status fit_reliefs(plm_marker *m, plm_error *error)
                                 fmax(2 * m->cell, 3 * scatter), s->has_pot ? within_wall : on_soil_level, m, &m->soil,
                                 error);
         m->has_soil = status == PLM_OK;
-        if (m->has_soil) m->soil_slack = slack_of(m, &m->soil);
+        if (m->has_soil) m->soil_slack = slack_of(&m->soil, SOIL_BUMP * m->cell);
     }
     if (status == PLM_OK && s->table >= 0) {
         const plm_level *it = &s->level[s->table];
         status = plm_relief_fit(&s->stand, (const float(*)[3])m->place, m->cloud->count, it->plane,
                                 fmax(2 * m->cell, 3 * it->scatter), on_table_level, m, &m->table, error);
         m->has_table = status == PLM_OK;
-        if (m->has_table) m->table_slack = slack_of(m, &m->table);
+        if (m->has_table) m->table_slack = slack_of(&m->table, TABLE_BUMP * m->cell);
     }
     return status;
 }
@@ -100,7 +102,7 @@ static void view_rim(const plm_marker *m, rim_view *view)
         if (p[2] >= view->low && part > 0.9 - m->cell / top && part < 1.04 + m->cell / top)
             view->at_height[(int)((p[2] - view->low) / (view->high - view->low) * PROFILE)] |= bit;
         const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
-        if (over > m->soil_slack + 0.3 * m->cell && p[2] < pot->rim)
+        if (over > fmax(m->soil_slack + 0.1 * m->cell, 2.2 * m->soil.sigma + 0.3 * m->cell) && p[2] < pot->rim)
             view->at_radius[(int)(part / 1.2 * PROFILE)] |= bit;
     }
 }

@@ -20,8 +20,9 @@ static const double TUBE_LEAVES = 0.5; /* more of what is off the stem is tube: 
 /* Noise thickens blades, and a foot may be a little slimmer than the stem: neither says enough then, and both together do, where
  * feet count from this many radii on (0.98 of a maize that neither told, 0.67 at most over 190 plants with petioles). */
 static const double STRAP_SLIM = 0.7, STRAP_WITH_TUBES = 0.73;
-/* Straps have one blade, seldom two and a half a leaf where noise tears them: from so many on straps ask for more than thick feet
- * by themselves give (balls that suit a stem among the rachises of many leaves are large for those, which look thick). */
+/* Straps have one blade, seldom two a leaf where noise tears them: from so many on, straps ask for more than thick feet by
+ * themselves give (two real maize of 2.4 and more blades give 0.91 and more), and slim ones say nothing: balls that suit a stem
+ * are large for the rachises of many leaves, which then look thick. Not where straps are folded: their feet alone tell. */
 static const double MANY_BLADES = 2, STRAP_OF_MANY = 0.65;
 /* Blades a leaf from which on leaves are compound: simple ones have one (1.17 at most over 90 virtual plants, where a scan
  * tore one), compound ones more even where noise tears them into leaves of their own (1.29 at least). Three on one foot are
@@ -79,7 +80,7 @@ static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *gr
     if (!leafy) return sketch->scale.has_tubes ? PLM_HABIT_BARE_STEM : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->scale.has_tubes) return leafy > 1 ? PLM_HABIT_HEAD : PLM_HABIT_SINGLE_LEAF;
     if (!sketch->stem.count) return PLM_HABIT_ROSETTE;
-    const bool many = (double)blades >= MANY_BLADES * (double)leafy;
+    const bool many = !sketch->scale.rises && (double)blades >= MANY_BLADES * (double)leafy;
     const double least_strap = many ? STRAP_OF_MANY : sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE;
     if (strap > least_strap * area) return PLM_HABIT_STRAP;
     if (!many && slim_strap + tubes * area > STRAP_WITH_TUBES * area) return PLM_HABIT_STRAP;

@@ -60,8 +60,8 @@ def draw_scene(draw, number):
 def ground_left(case, run, folder):
     truth = score.read_ply(os.path.join(folder, case["labelled"]))
     found = score.read_ply(os.path.join(run, case["plant_id"] + ".labelled.ply"))
-    if len(truth) != len(found):
-        return float("nan")  # gaussians of no opacity were dropped
+    if "opacity" in truth.dtype.names and len(truth) != len(found):  # gaussians of no opacity were dropped
+        truth = truth[1 / (1 + np.exp(-truth["opacity"].astype(float))) >= 0.005]
     ground = truth["label"] == 4
     return float(np.mean(np.isin(found["label"][ground], (1, 2, 3)))) if ground.any() else float("nan")
 
@@ -73,13 +73,16 @@ def score_scene(program, out, name, seed, scene):
                    check=True)
     case = read_index(folder)[0]
     start = time.monotonic()
-    measure(program, [os.path.join(folder, case["file"])], run, ["--views", "0"])
-    seconds = time.monotonic() - start
-    labels = score.score_labels(case, run, folder)
-    with open(os.path.join(run, "run.json")) as file:
-        habit = json.load(file)["plants"][0]["organs"]["habit"]
+    try:
+        measure(program, [os.path.join(folder, case["file"])], run, ["--views", "0"])
+        labels, left = score.score_labels(case, run, folder), ground_left(case, run, folder)
+        with open(os.path.join(run, "run.json")) as file:
+            habit = json.load(file)["plants"][0]["organs"]["habit"]
+    except (SystemExit, OSError, ValueError, TypeError, KeyError) as problem:  # the worst of all: nothing was measured
+        print(f"{name}: {problem}", file=sys.stderr)
+        labels, left, habit = {"miou": 0, "f1": 0, "pieces": (-1, 0)}, float("nan"), "failed"
     values = (name, kind, scanner, surroundings, " ".join(options), habit, round(labels["miou"], 4),
-              round(labels["f1"], 4), *labels["pieces"], round(ground_left(case, run, folder), 6), round(seconds, 2))
+              round(labels["f1"], 4), *labels["pieces"], round(left, 6), round(time.monotonic() - start, 2))
     return dict(zip(FIELDS, values))
 
 
