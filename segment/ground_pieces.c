@@ -10,6 +10,7 @@ enum { FOOT_LAYERS = 4, FILLED = (1 << FOOT_LAYERS) - 1, GROUND = -1, OPEN = -2,
 
 static const float SOIL_SHARE = 0.2f;  /* of the plant among the points of a colour: less is the soil's */
 static const float PLANT_SHARE = 0.5f; /* more: no bump of the soil */
+static const double FOOT_LAYER = 0.75; /* voxels */
 static const double BUMP = 0.25;       /* voxels beyond the slack that bumps and the tail of the noise reach */
 /* Points of other colours per point of the soil's about a foot: 0.2 and more under stems, 0.03 and less under rosettes. */
 static const double ROOTED = 0.1;
@@ -137,25 +138,29 @@ static int64_t foot_cell(const plm_stand *t, const float p[3])
     return (int64_t)a * (2 * t->size[1]) + (int64_t)b;
 }
 
-/* Which cells of the floor have free points in all layers over the soil. */
-static void fill_layers(const plm_marker *m, double layer, uint8_t *layers)
+/* Of each cell of the floor, the layers over the soil that hold free points, as bits; NULL: no room. The caller's. */
+static uint8_t *find_layers(const plm_marker *m, plm_error *error)
 {
-    for (size_t i = 0; i < m->cloud->count; i++) {
+    const plm_stand *t = &m->scene->stand;
+    const double layer = FOOT_LAYER * m->cell;
+    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
+    for (size_t i = 0; layers && i < m->cloud->count; i++) {
         const double over = m->over[i] - m->soil_slack;
         if (m->zone[i] != PLM_ZONE_FREE || !(over > 0 && over < FOOT_LAYERS * layer)) continue;
-        const int64_t c = foot_cell(&m->scene->stand, m->place[i]);
+        const int64_t c = foot_cell(t, m->place[i]);
         if (c >= 0) layers[c] |= (uint8_t)(1 << (int)(over / layer));
     }
+    return layers;
 }
 
 /* Gives the foot its points back, where all layers are filled. */
-static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double layer, double foot[2])
+static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double foot[2])
 {
     double sum[2] = {0}, n = 0, soil = 0, other = 0;
     for (int turn = 0; turn < 2; turn++)
         for (size_t i = 0; i < m->cloud->count; i++) {
             const double over = m->over[i];
-            if (!(over >= -m->soil.sigma && over < m->soil_slack + FOOT_LAYERS * layer)) continue;
+            if (!(over >= -m->soil.sigma && over < m->soil_slack + FOOT_LAYERS * FOOT_LAYER * m->cell)) continue;
             const int64_t c = foot_cell(&m->scene->stand, m->place[i]);
             if (c < 0 || layers[c] != FILLED) continue;
             if (turn == 0) {
@@ -173,12 +178,9 @@ static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *la
  * stands over the soil, not in it: the petioles of a rosette, which need no foot. */
 plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[2], plm_error *error)
 {
-    const plm_stand *t = &m->scene->stand;
-    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
+    uint8_t *layers = find_layers(m, error);
     if (!layers) return PLM_E_MEMORY;
-    const double layer = 0.75 * m->cell;
-    fill_layers(m, layer, layers);
-    free_foot(m, plant_share, layers, layer, foot);
+    free_foot(m, plant_share, layers, foot);
     plm_free(layers);
     return PLM_OK;
 }
@@ -208,10 +210,9 @@ static bool is_like_soil(const plm_marker *m, size_t i, const float *plant_share
 plm_status plm_ground_bumps(plm_marker *m, const float *plant_share, plm_error *error)
 {
     const plm_stand *t = &m->scene->stand;
-    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
+    uint8_t *layers = find_layers(m, error);
     size_t *ground = plm_alloc_zero(t->surfels->count + 1, sizeof *ground, error);
     const bool room = layers && ground;
-    if (room) fill_layers(m, 0.75 * m->cell, layers);
     for (size_t i = 0; room && i < m->cloud->count; i++)
         if (m->patch[i] >= 0) ground[m->patch[i]] += m->zone[i] != PLM_ZONE_FREE;
     for (size_t i = 0; room && i < m->cloud->count; i++) {

@@ -31,8 +31,8 @@ static bool on_table_level(const void *context, const double p[3])
            plm_pot_distance(pot, p) > plm_pot_radius(pot, p[2]) + 1.5 * m->cell;
 }
 
-/* A point of the surface lies within 2.2 sigma (97 %) of its relief, or so many voxels; tables have fewer bumps than soil. */
-static const double SOIL_BUMP = 0.3, TABLE_BUMP = 0.1;
+/* A point of the surface lies within 2.2 sigma (97 %) of its relief, or so many voxels: soil has bumps. */
+static const double SOIL_BUMP = 0.3, EVEN_BUMP = 0.1;
 
 static double slack_of(const plm_relief *relief, double bump)
 {
@@ -58,7 +58,7 @@ static plm_status fit_reliefs(plm_marker *m, plm_error *error)
         status = plm_relief_fit(&s->stand, (const float(*)[3])m->place, m->cloud->count, it->plane,
                                 fmax(2 * m->cell, 3 * it->scatter), on_table_level, m, &m->table, error);
         m->has_table = status == PLM_OK;
-        if (m->has_table) m->table_slack = slack_of(&m->table, TABLE_BUMP * m->cell);
+        if (m->has_table) m->table_slack = slack_of(&m->table, EVEN_BUMP * m->cell);
     }
     return status;
 }
@@ -93,6 +93,7 @@ static void view_rim(const plm_marker *m, rim_view *view)
     const double top = pot->radius[pot->rows - 1], reach = fmax(4 * m->cell, 0.15 * top);
     *view = (rim_view){.low = pot->rim - reach, .high = pot->rim + reach};
     const double lowest = fmin(view->low, pot->soil);
+    const double clear = (m->has_soil ? slack_of(&m->soil, EVEN_BUMP * m->cell) : 0) + 0.3 * m->cell; /* of the soil */
     for (size_t i = 0; i < m->cloud->count; i++) {
         const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
         if (p[2] < lowest || p[2] >= view->high) continue;
@@ -102,8 +103,7 @@ static void view_rim(const plm_marker *m, rim_view *view)
         if (p[2] >= view->low && part > 0.9 - m->cell / top && part < 1.04 + m->cell / top)
             view->at_height[(int)((p[2] - view->low) / (view->high - view->low) * PROFILE)] |= bit;
         const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
-        if (over > fmax(m->soil_slack + 0.1 * m->cell, 2.2 * m->soil.sigma + 0.3 * m->cell) && p[2] < pot->rim)
-            view->at_radius[(int)(part / 1.2 * PROFILE)] |= bit;
+        if (over > clear && p[2] < pot->rim) view->at_radius[(int)(part / 1.2 * PROFILE)] |= bit;
     }
 }
 

@@ -58,10 +58,7 @@ def draw_scene(draw, number):
 
 
 def ground_left(case, run, folder):
-    truth = score.read_ply(os.path.join(folder, case["labelled"]))
-    found = score.read_ply(os.path.join(run, case["plant_id"] + ".labelled.ply"))
-    if "opacity" in truth.dtype.names and len(truth) != len(found):  # gaussians of no opacity were dropped
-        truth = truth[1 / (1 + np.exp(-truth["opacity"].astype(float))) >= 0.005]
+    truth, found = score.read_labels(case, run, folder)
     ground = truth["label"] == 4
     return float(np.mean(np.isin(found["label"][ground], (1, 2, 3)))) if ground.any() else float("nan")
 
@@ -80,7 +77,7 @@ def score_scene(program, out, name, seed, scene):
             habit = json.load(file)["plants"][0]["organs"]["habit"]
     except (SystemExit, OSError, ValueError, TypeError, KeyError) as problem:  # the worst of all: nothing was measured
         print(f"{name}: {problem}", file=sys.stderr)
-        labels, left, habit = {"miou": 0, "f1": 0, "pieces": (-1, 0)}, float("nan"), "failed"
+        labels, left, habit = {"miou": 0, "f1": 0, "pieces": (None, 0)}, float("nan"), "failed"
     values = (name, kind, scanner, surroundings, " ".join(options), habit, round(labels["miou"], 4),
               round(labels["f1"], 4), *labels["pieces"], round(left, 6), round(time.monotonic() - start, 2))
     return dict(zip(FIELDS, values))

@@ -81,13 +81,19 @@ def match_leaves(truth, found):
     return pairs, len(np.unique(truth["organ"][truth["label"] == 3])), len(ids)
 
 
-def score_labels(case, run, folder):
+def read_labels(case, run, folder):
+    """The labelled clouds of truth and of the run, row by row the same points."""
     truth = read_ply(os.path.join(folder, case["labelled"]))
     found = read_ply(os.path.join(run, case["plant_id"] + ".labelled.ply"))
     if "opacity" in truth.dtype.names and len(truth) != len(found):
         truth = truth[1 / (1 + np.exp(-truth["opacity"].astype(float))) >= 0.005]
     if len(truth) != len(found):
         raise ValueError(f"{case['plant_id']}: {len(found)} labelled points, truth has {len(truth)}")
+    return truth, found
+
+
+def score_labels(case, run, folder):
+    truth, found = read_labels(case, run, folder)
     tube_t, tube_f = np.isin(truth["label"], (1, 2)), np.isin(found["label"], (1, 2))
     leaf_t, leaf_f = truth["label"] == 3, found["label"] == 3
     classes = [iou(t, f) for t, f in ((tube_t, tube_f), (leaf_t, leaf_f)) if t.any()]

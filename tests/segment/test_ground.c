@@ -4,8 +4,8 @@
 #include "cloud/linear.h"
 #include "io/io.h"
 #include "segment/segment.h"
+#include "simulate/simulate.h"
 #include "support/scene.h"
-#include "support/virtual_plant.h"
 
 static const test_scene plain = {
     .points = 200000, .leaf_length = 0.35, .noise = 0.001, .outliers = 0.004, .spacing = 0.007, .seed = 5};
@@ -120,16 +120,29 @@ static void plants_without_ground_claim_none(void **unused)
     assert_false(find_in(&s).ground.found); /* a bare stem */
 }
 
+/* What is found in the scan of a virtual plant, with its colours or without. */
+static outcome find_in_plant(const char *kind, const plm_scan_options *options, bool coloured)
+{
+    plm_error error = {0};
+    plm_virtual_plant plant;
+    plm_scan scan;
+    assert_ok(plm_plant_grow(kind, &(plm_plant_options){.seed = options->seed}, &plant, &error));
+    assert_ok(plm_scan_plant(&plant, options, &scan, &error));
+    plm_cloud cloud = scan.cloud;
+    if (!coloured) cloud.rgb = NULL;
+    const outcome o = find(&cloud);
+    plm_scan_free(&scan);
+    plm_virtual_plant_free(&plant);
+    return o;
+}
+
 /* A rosette so flat that it passes for rough soil, with young leaves of another green at its middle. */
 static void a_flat_rosette_is_no_ground(void **unused)
 {
     (void)unused;
     const plm_scan_options scan = {
         .scanner = PLM_SCANNER_UNIFORM, .seed = 764, .points = 8000, .noise = 0.0005, .outliers = 0.005};
-    virtual_plant made = virtual_plant_make("arabidopsis", 1, &scan);
-    const outcome o = find(&made.scan.cloud);
-    assert_false(o.ground.found);
-    virtual_plant_free(&made);
+    assert_false(find_in_plant("arabidopsis", &scan, true).ground.found);
 }
 
 /* The bumps of fine soil stick out of its relief where there is no noise: as stems and leaves they would be the plant's. Colours
@@ -142,27 +155,16 @@ static void bumps_of_soil_are_soil(void **unused)
         uint64_t seed;
         double left; /* 0.0088 of the pepper's before bumps were looked at */
     } scene[] = {{"pepper", 5027, 0.001}, {"arabidopsis", 6051, 0.001}, {"arabidopsis", 6050, 0.0005}};
-    for (size_t i = 0; i < COUNT(scene); i++) {
-        plm_error error = {0};
-        plm_virtual_plant plant;
-        plm_scan scan;
-        const plm_scan_options options = {
-            .scanner = PLM_SCANNER_UNIFORM, .seed = scene[i].seed, .points = 20000, .has_table = true};
-        assert_ok(plm_plant_grow(scene[i].kind, &(plm_plant_options){.seed = scene[i].seed}, &plant, &error));
-        assert_ok(plm_scan_plant(&plant, &options, &scan, &error));
-        uint8_t(*const rgb)[3] = scan.cloud.rgb;
-        for (int coloured = 1; coloured >= 0; coloured--) {
-            scan.cloud.rgb = coloured ? rgb : NULL;
-            const outcome o = find(&scan.cloud);
+    for (size_t i = 0; i < COUNT(scene); i++)
+        for (int coloured = 0; coloured < 2; coloured++) {
+            const plm_scan_options scan = {
+                .scanner = PLM_SCANNER_UNIFORM, .seed = scene[i].seed, .points = 20000, .has_table = true};
+            const outcome o = find_in_plant(scene[i].kind, &scan, coloured);
             print_message("%s %d%s: %.4f of the ground left, %.4f of the plant kept\n", scene[i].kind,
                           (int)scene[i].seed, coloured ? "" : " without colours", o.left, o.kept);
             assert_true(o.ground.found && o.kept > 0.995);
             assert_true(o.left < (coloured ? scene[i].left : 0.004));
         }
-        scan.cloud.rgb = rgb;
-        plm_scan_free(&scan);
-        plm_virtual_plant_free(&plant);
-    }
 }
 
 static void colour_is_not_needed_and_not_trusted(void **unused)
