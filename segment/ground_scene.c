@@ -111,7 +111,11 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
     if (it->agreement < (colour > 0 ? 0.95 : 0.962)) return 0;
     if (it->area < (colour > 0 ? 1.5 : colour < 0 ? 4 : 3) * largest_other) return 0;
     if (f.below > 0.03 * ease || f.under > 0.10 * ease) return 0;
+    /* Floaters lie on both sides of a single leaf. */
+    if (f.above < 3 * f.below) return 0;
     if (f.above < 0.01 || f.height < 0.05 || f.inward < 0.3 || f.over < 0.2) return 0;
+    /* The lowest leaf of a head: most of the plant is not over it, as a plant is over its soil. */
+    if (f.over < 0.65 && it->agreement < 0.985) return 0;
     if (f.reach < (colour > 0 ? 0.2 : 0.3) || it->area < 0.5 * it->hull_area) return 0;
     return fmin(1, 0.5 + 0.25 * (colour > 0) + 0.25 * (rough < 0.01) + 0.25 * (f.reach > 0.5));
 }
@@ -125,6 +129,8 @@ static bool near_level(const plm_ground_scene *s, const float p[3])
     return false;
 }
 
+static const double SLIM = 0.055; /* radius of a pot over the size of all: a slimmer one may be a stem */
+
 /* Does the wall belong to a pot? Gives a confidence, 0 for no. */
 static double accept_pot(const plm_ground_scene *s)
 {
@@ -135,11 +141,15 @@ static double accept_pot(const plm_ground_scene *s)
     const double small = fmin(fmax((12 - top / cell) / 6, 0), 1);
     if (pot->coverage < 0.55 + 0.25 * small || pot->scatter > 0.06 * top + 0.5 * cell) return 0;
     if (pot->lid < 0.15 && (pot->coverage < 0.85 || pot->scatter > 0.05 * top + 0.3 * cell)) return 0;
-    double above = 0, below = 0;
+    double above = 0, below = 0, high = pot->rim;
     for (size_t k = 0; k < t->surfels->count; k++) {
+        high = fmax(high, t->place[k][2]);
         above += t->place[k][2] > fmax(pot->rim, pot->soil) + 3 * cell;
         below += t->place[k][2] < pot->foot - 4 * cell && !near_level(s, t->place[k]);
     }
+    /* The stem under a head is as round; no soil closes it. */
+    const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
+    if (top < SLIM * plm_norm(size) && pot->lid < 0.15) return 0;
     if (above < fmax(20, 0.01 * all) || below > 0.1 * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }

@@ -3,6 +3,7 @@
 #include "segment/segment.h"
 
 #include "segment/blade_base.h"
+#include "segment/head.h"
 #include "segment/petiole_foot.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
@@ -116,6 +117,13 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     return status;
 }
 
+/* Blades without tubes are a single leaf or a head: their sheets tell. */
+static bool may_be_head(plm_habit habit, const plm_sketch *sketch)
+{
+    const bool bladed = sketch->habit == PLM_HABIT_SINGLE_LEAF || sketch->habit == PLM_HABIT_HEAD;
+    return habit == PLM_HABIT_HEAD || (habit == PLM_HABIT_UNKNOWN && !sketch->scale.has_tubes && bladed);
+}
+
 /* Whether doubtful tubes were petioles: they then part the blades into leaves of which none is half of the plant. On virtual
  * rosettes the largest has 0.3 at most, while of single leaves the noise parts a rim or a fold and leaves 0.57 or more. */
 static plm_status is_rosette(const plm_sketch *sketch, bool *answer, plm_error *error)
@@ -167,7 +175,10 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     out.noise = sketch.scale.noise;
     carry(&sketch, row, count, &out);
     out.leaf_count = sketch.leaf_count;
-    if (sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes) {
+    if (may_be_head(options->habit, &sketch)) status = plm_deadline_check(options->deadline, error);
+    if (status == PLM_OK && may_be_head(options->habit, &sketch))
+        status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
+    if (status == PLM_OK && sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes) {
         status = plm_petiole_feet((const float(*)[3])xyz, row, count, &sketch, &out, error);
         if (status == PLM_OK) status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);
     }

@@ -145,6 +145,22 @@ static void a_flat_rosette_is_no_ground(void **unused)
     assert_false(find_in_plant("arabidopsis", &scan, true).ground.found);
 }
 
+/* The lowest leaf of a head is flat, and the stem under it round; floaters lie above a single leaf as above soil. */
+static void leaves_are_no_ground_and_a_stem_no_pot(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *kind;
+        plm_scan_options scan;
+    } plant[] = {
+        {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 405, .points = 45000}},
+        {"lettuce", {.scanner = PLM_SCANNER_SPLAT, .seed = 305, .points = 60000, .noise = 5e-4, .outliers = 0.01}},
+        {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 603, .points = 200000}},
+        {"single_leaf", {.scanner = PLM_SCANNER_SPLAT, .seed = 71, .points = 20000, .noise = 5e-4, .outliers = 0.01}}};
+    for (size_t i = 0; i < COUNT(plant); i++)
+        assert_false(find_in_plant(plant[i].kind, &plant[i].scan, true).ground.found);
+}
+
 /* The bumps of fine soil stick out of its relief where there is no noise: as stems and leaves they would be the plant's. Colours
  * help, but are not needed. */
 static void bumps_of_soil_are_soil(void **unused)
@@ -324,6 +340,7 @@ int main(void)
         cmocka_unit_test(a_rosette_over_the_rim_stays_a_plant),
         cmocka_unit_test(plants_without_ground_claim_none),
         cmocka_unit_test(a_flat_rosette_is_no_ground),
+        cmocka_unit_test(leaves_are_no_ground_and_a_stem_no_pot),
         cmocka_unit_test(bumps_of_soil_are_soil),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),

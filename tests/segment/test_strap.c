@@ -239,6 +239,24 @@ static void many_blades_a_leaf_are_no_straps(void **unused)
     assert_int_equal(habit, PLM_HABIT_COMPOUND);
 }
 
+/* Noise makes specks of blade on bare branches, which were petioles and straps with them. */
+static void bare_branches_bear_no_leaves(void **unused)
+{
+    (void)unused;
+    const plm_scan_options options[] = {
+        {.scanner = PLM_SCANNER_RGBD, .seed = 72, .points = 20000, .noise = 5e-4, .views = 12},
+        {.scanner = PLM_SCANNER_RGBD, .seed = 73, .points = 20000, .noise = 5e-4, .views = 12},
+        {.scanner = PLM_SCANNER_SPLAT, .seed = 74, .points = 20000, .noise = 1e-3},
+        {.scanner = PLM_SCANNER_DOME, .seed = 72, .points = 20000, .noise = 1e-3}};
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        plm_habit habit;
+        const label_score score = segment("bare_stem", options[i].seed, &options[i], &habit);
+        assert_int_equal(habit, PLM_HABIT_BARE_STEM);
+        assert_int_equal(score.leaves_found, 0);
+        assert_true(score.iou[PLM_LABEL_STEM] >= 0.98);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
@@ -257,6 +275,7 @@ int main(void)
                                        cmocka_unit_test(a_way_up_petioles_is_no_stem),
                                        cmocka_unit_test(short_petioles_make_no_single_leaf),
                                        cmocka_unit_test(two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each),
-                                       cmocka_unit_test(blades_on_one_foot_are_leaflets)};
+                                       cmocka_unit_test(blades_on_one_foot_are_leaflets),
+                                       cmocka_unit_test(bare_branches_bear_no_leaves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
