@@ -9,6 +9,9 @@
 
 #include "cloud/linear.h"
 
+/* Radius of a pot over the size of all, and height over radius: where it is slimmer and longer, it may be a stem. */
+static const double SLIM = 0.045, LONG = 2;
+
 /* ---- Colour --------------------------------------------------------------------------------------------------- */
 
 /* Excess green over brightness (Woebbecke et al. 1995): 0 for grey, 0.2 to 0.6 for leaves. */
@@ -114,8 +117,8 @@ static double plain_ground(const plm_stand *t, const plm_level level[], int leve
     /* Floaters lie on both sides of a single leaf. */
     if (f.above < 3 * f.below) return 0;
     if (f.above < 0.01 || f.height < 0.05 || f.inward < 0.3 || f.over < 0.2) return 0;
-    /* The lowest leaf of a head: most of the plant is not over it, as a plant is over its soil. */
-    if (f.over < 0.65 && it->agreement < 0.985) return 0;
+    /* The lowest leaf of a head: rough, and most of the plant is not over it, as a plant is over its soil. */
+    if (f.over < 0.65 && it->agreement < 0.985 && rough > 0.011) return 0;
     if (f.reach < (colour > 0 ? 0.2 : 0.3) || it->area < 0.5 * it->hull_area) return 0;
     return fmin(1, 0.5 + 0.25 * (colour > 0) + 0.25 * (rough < 0.01) + 0.25 * (f.reach > 0.5));
 }
@@ -128,8 +131,6 @@ static bool near_level(const plm_ground_scene *s, const float p[3])
         if (fabs(p[2] - plm_level_height(&s->level[i], p[0], p[1])) < 3 * s->stand.surfels->cell) return true;
     return false;
 }
-
-static const double SLIM = 0.055; /* radius of a pot over the size of all: a slimmer one may be a stem */
 
 /* Does the wall belong to a pot? Gives a confidence, 0 for no. */
 static double accept_pot(const plm_ground_scene *s)
@@ -149,7 +150,7 @@ static double accept_pot(const plm_ground_scene *s)
     }
     /* The stem under a head is as round; no soil closes it. */
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
-    if (top < SLIM * plm_norm(size) && pot->lid < 0.15) return 0;
+    if (top < SLIM * plm_norm(size) && pot->rim - pot->foot > LONG * top && pot->lid < 0.15) return 0;
     if (above < fmax(20, 0.01 * all) || below > 0.1 * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }

@@ -3,7 +3,6 @@
 #include "segment/head.h"
 
 #include "cloud/linear.h"
-#include "segment/scale.h"
 #include "segment/scratch.h"
 #include "segment/sheets.h"
 
@@ -82,7 +81,7 @@ static plm_status join_pieces(head *h, plm_error *error)
                 for (size_t k = 0; k < n; k++)
                     if (number[k] == from) number[k] = to;
             }
-        /* number[p] is the number of some member; the least member comes first */
+        /* Numbers of joined sheets, in the order of their first pieces. */
         for (size_t p = 0; p < n; p++) seen[p] = UINT32_MAX;
         for (size_t p = 0; p < n; p++) {
             const size_t of = (size_t)number[p];
@@ -196,7 +195,10 @@ plm_status plm_find_head(const float (*xyz)[3], const uint32_t *row, size_t coun
     plm_sheet_surface surface = {0};
     head h = {.surface = &surface};
     size_t largest = 0, all = 0;
-    plm_status status = plm_sheet_surface_make(xyz, count, noise, &surface, error);
+    plm_error ours = {0};
+    plm_status status = plm_sheet_surface_make(xyz, count, noise, &surface, &ours);
+    if (status == PLM_E_DEGENERATE) return PLM_OK; /* no sheets: all stays as it is */
+    if (status != PLM_OK && error) *error = ours;
     if (status == PLM_OK) {
         h.sheet = plm_scratch_take(&scratch, surface.thinned.count, sizeof *h.sheet);
         h.on_stem = plm_scratch_take(&scratch, surface.thinned.count, sizeof *h.on_stem);
@@ -207,7 +209,8 @@ plm_status plm_find_head(const float (*xyz)[3], const uint32_t *row, size_t coun
     if (status == PLM_OK) status = mark_stem(&h, noise, error);
     if (status == PLM_OK) status = number_leaves(&h, &largest, &all, error);
     const bool is_head = h.sheets >= FEWEST_LEAVES && (double)largest <= MOST * (double)all;
-    if (status == PLM_OK && (is_head || result->habit == PLM_HABIT_HEAD)) write_labels(&h, row, count, result);
+    if (status == PLM_OK && h.sheets && (is_head || result->habit == PLM_HABIT_HEAD))
+        write_labels(&h, row, count, result);
     plm_head_stem_free(&h.stem);
     plm_scratch_free(&scratch, NULL);
     plm_sheet_surface_free(&surface);

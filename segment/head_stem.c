@@ -13,10 +13,12 @@ static const double THICKEST = 0.07; /* radius of a stem over the plant's size, 
 static const double LEVEL = 0.6;     /* |z| of a normal, at most, for its line to lead to the middle */
 static const double RADIAL = 0.8;    /* cosine between such a normal and the way to the middle */
 static const double STEP = 1.5,
-                    WINDOW = 2;    /* between circles, and half the height of what each is fitted to, in spacings */
-static const double NEAR = 0.3;    /* of the radius: points so near to the circle before are fitted */
-static const double ON = 0.12;     /* of the radius: points so near to a circle lie on it */
-static const double CHANGE = 0.25; /* of the radius from one circle to the next, at most */
+                    WINDOW = 2; /* between circles, and half the height of what each is fitted to, in spacings */
+static const double NEAR = 0.3; /* of the radius: points so near to the circle before are fitted */
+static const double ON = 0.12;  /* of the radius: points so near to a circle lie on it */
+static const double CHANGE = 0.25,
+                    FIRST_CHANGE =
+                        0.5;       /* of the radius from one circle to the next, at most; from the raster's guess */
 static const double WIDENS = 1.15; /* a circle over the thinnest below, at most: leaves spread, stems taper */
 enum { SECTORS = 12, FIRST_SECTORS = 8, LEAST_SECTORS = 5, RASTER = 512, CIRCLES = 200 };
 
@@ -96,13 +98,14 @@ static plm_status find_middle(const search *s, double middle[2], plm_error *erro
     return PLM_OK;
 }
 
-/* Lowest height near the middle: quantile of what is lower than the leaves' feet may be. */
+/* Lowest height near the middle, but for a few strays. */
 static bool find_base(const search *s, const double middle[2], float *value, double *base)
 {
+    const double top = s->low + FOOT * (s->high - s->low);
     size_t near = 0;
     for (size_t i = 0; i < s->surface->thinned.count; i++) {
         const float *p = s->surface->thinned.xyz[i];
-        if (hypot(p[0] - middle[0], p[1] - middle[1]) < s->thickest) value[near++] = p[2];
+        if (p[2] < top && hypot(p[0] - middle[0], p[1] - middle[1]) < s->thickest) value[near++] = p[2];
     }
     if (near < 2 * SECTORS) return false;
     *base = plm_quantile(value, near, 0.02);
@@ -113,7 +116,7 @@ static bool find_base(const search *s, const double middle[2], float *value, dou
 static double find_radius(const search *s, const double middle[2], double base)
 {
     enum { BINS = 64 };
-    double bin[BINS] = {0};
+    double bin[BINS] = {0}, moment[BINS] = {0};
     const double width = s->thickest / BINS, top = base + 0.5 * s->thickest;
     for (size_t i = 0; i < s->surface->thinned.count; i++) {
         const float *p = s->surface->thinned.xyz[i];
@@ -121,24 +124,29 @@ static double find_radius(const search *s, const double middle[2], double base)
         double n[2];
         if (p[2] > top || !(distance > 0 && distance < s->thickest) || !level_normal(s, i, n)) continue;
         if (fabs(n[0] * d[0] + n[1] * d[1]) < RADIAL * distance) continue;
-        bin[(int)(distance / width)] += 1;
+        const int at = (int)fmin(distance / width, BINS - 1);
+        bin[at]++;
+        moment[at] += distance;
     }
     const int half = (int)ceil(s->surface->spacing / width);
     double most = 0, radius = 0;
     for (int b = 0; b < BINS; b++) {
-        double sum = 0;
-        for (int k = b - half; k <= b + half; k++)
-            if (k >= 0 && k < BINS) sum += bin[k];
+        double sum = 0, distances = 0;
+        for (int k = b - half; k <= b + half; k++) {
+            if (k < 0 || k >= BINS) continue;
+            sum += bin[k];
+            distances += moment[k];
+        }
         if (sum > most) {
             most = sum;
-            radius = (b + 0.5) * width;
+            radius = distances / sum;
         }
     }
     return radius;
 }
 
 /* How many of the sectors around a circle hold a point that lies on it, within a window of height. */
-static int sectors(const search *s, const double circle[3], double height, double window, double tolerance)
+static int count_sectors(const search *s, const double circle[3], double height, double window, double tolerance)
 {
     bool seen[SECTORS] = {false};
     int count = 0;
@@ -148,14 +156,14 @@ static int sectors(const search *s, const double circle[3], double height, doubl
         double n[2];
         if (fabs(p[2] - height) > window || fabs(hypot(d[0], d[1]) - circle[2]) > tolerance) continue;
         if (!level_normal(s, i, n) || fabs(n[0] * d[0] + n[1] * d[1]) < RADIAL * hypot(d[0], d[1])) continue;
-        seen[(int)((atan2(d[1], d[0]) / PLM_PI + 1) * 0.4999 * SECTORS)] = true;
+        seen[(int)((atan2(d[1], d[0]) / (2 * PLM_PI) + 1) * SECTORS) % SECTORS] = true;
     }
     for (int k = 0; k < SECTORS; k++) count += seen[k];
     return count;
 }
 
-/* Fits a circle to the points near the one given. */
-static bool fit_circle(const search *s, double height, double window, double (*e)[2], double circle[3])
+/* Fits a circle to the points near the one given; no fit moves it by more than change. */
+static bool fit_circle(const search *s, double height, double window, double change, double (*e)[2], double circle[3])
 {
     size_t near = 0;
     const double reach = fmax(NEAR * circle[2], fmax(s->surface->spacing, 3 * s->noise));
@@ -171,7 +179,7 @@ static bool fit_circle(const search *s, double height, double window, double (*e
     double x[3] = {0, 0, circle[2]};
     if (near < SECTORS || !plm_stem_circle((const double(*)[2])e, near, fmax(s->noise, 0.05 * circle[2]), reach, x))
         return false;
-    if (fabs(x[2] - circle[2]) > CHANGE * circle[2] || hypot(x[0], x[1]) > CHANGE * circle[2]) return false;
+    if (fabs(x[2] - circle[2]) > change || hypot(x[0], x[1]) > change) return false;
     for (int a = 0; a < 2; a++) circle[a] += x[a];
     circle[2] = x[2];
     return true;
@@ -182,15 +190,15 @@ static void follow(const search *s, double circle[3], double (*e)[2], plm_head_s
 {
     const double window = WINDOW * s->surface->spacing;
     for (int round = 0; round < 4; round++)
-        if (!fit_circle(s, stem->base + 2 * window, 2 * window, e, circle)) return;
+        if (!fit_circle(s, stem->base + window, window, fmax(FIRST_CHANGE * circle[2], s->cell), e, circle)) return;
     double thinnest = INFINITY;
     for (double z = stem->base; stem->count < CIRCLES && z < s->high; z += stem->step) {
         double next[3] = {circle[0], circle[1], circle[2]};
         const double tolerance = fmax(ON * circle[2], fmax(0.5 * s->surface->spacing, 2 * s->noise));
-        if (!fit_circle(s, z, window, e, next)) break;
+        if (!fit_circle(s, z, window, CHANGE * circle[2], e, next)) break;
         thinnest = fmin(thinnest, next[2]);
         if (next[2] > WIDENS * thinnest) break;
-        if (sectors(s, next, z, window, tolerance) < (stem->count ? LEAST_SECTORS : FIRST_SECTORS)) break;
+        if (count_sectors(s, next, z, window, tolerance) < (stem->count ? LEAST_SECTORS : FIRST_SECTORS)) break;
         for (int a = 0; a < 3; a++) stem->circle[stem->count][a] = circle[a] = next[a];
         stem->count++;
     }
@@ -226,8 +234,7 @@ bool plm_head_is_stem(const plm_head_stem *stem, const float xyz[3], double tole
 {
     if (!stem->count) return false;
     const double place = (xyz[2] - stem->base) / stem->step;
-    if (place > (double)stem->count - 0.5) return false;
-    const size_t below = place < 0 ? 0 : (size_t)place < stem->count ? (size_t)place : stem->count - 1;
-    const double *circle = stem->circle[below];
+    if (!(place < (double)stem->count - 0.5)) return false;
+    const double *circle = stem->circle[place < 0 ? 0 : (size_t)(place + 0.5)];
     return hypot(xyz[0] - circle[0], xyz[1] - circle[1]) < circle[2] + tolerance;
 }

@@ -24,8 +24,8 @@ static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tel
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
 static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette */
-/* Of what looks like a tube, the share that lies on a ring, at each its best: 0.35 and more over 90 clouds with tubes (0.26 where
- * petioles are hardly seen), 0.2 and less where balls of a few points on noisy sheets look long. */
+/* Where the smallest balls find the longest tubes, the share of those that lies on a ring, at least (each at its best): 0.35 and more
+ * over 90 clouds with tubes, 0.2 and less where balls of a few points on noisy sheets look long. */
 static const double TUBE_RING = 0.22;
 static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
@@ -151,7 +151,7 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
         peak = fmax(peak, series[i].tube_length);
         ring = fmax(ring, series[i].ring_length);
     }
-    const bool is_round = ring >= TUBE_RING * peak;
+    const bool is_round = series[0].tube_length < peak || ring >= TUBE_RING * peak;
     int wide = 0;
     while (wide + 1 < trials && series[wide].radius < NOISE_BALL * series[wide].flat_noise) wide++;
     out.noise = series[wide].flat_noise;
@@ -162,6 +162,7 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;
     out.has_tubes = is_round && peak >= TUBE_LEAST * out.size;
+    /* Tubes as short as a rosette's may not show round; long ones would. */
     out.is_doubtful = !out.has_tubes && peak >= TUBE_DOUBTFUL * out.size && (is_round || peak < TUBE_LEAST * out.size);
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;

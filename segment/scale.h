@@ -11,7 +11,7 @@ typedef struct plm_scale {
     double radius;      /**< R */
     double stem_radius; /**< 75 % quantile of the radii of tube-like points */
     double tube_length; /**< of all tube-like points together, at R */
-    bool has_tubes;
+    bool has_tubes;     /**< long enough, and with enough of them on rings */
     bool
         is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well; then has_tubes is false as found here */
     bool rises; /**< tube length still grew at the largest R: leaves may pass as stems */

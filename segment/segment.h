@@ -74,7 +74,7 @@ typedef enum plm_habit {
     PLM_HABIT_COMPOUND,    /**< stem, leaves of several leaflets */
     PLM_HABIT_STRAP,       /**< stem, strap leaves without petiole (maize) */
     PLM_HABIT_ROSETTE,     /**< no visible stem, petioles or leaves from the base */
-    PLM_HABIT_HEAD,        /**< leaves only, no tubes (lettuce) */
+    PLM_HABIT_HEAD,        /**< leaves without petioles around a short stem (lettuce) */
     PLM_HABIT_SINGLE_LEAF, /**< one blade */
     PLM_HABIT_BARE_STEM    /**< stem, no leaves */
 } plm_habit;
@@ -105,7 +105,7 @@ typedef struct plm_segmentation {
     size_t count;
     uint8_t *label; /**< plm_label */
     int32_t *organ; /**< number within its class, 0-based; -1: none. Petiole k carries leaf k. Leaves are numbered along
-                           the stem from the base up */
+                           the stem from the base up, those of a head by the height of their feet */
     int32_t
         *leaflet; /**< of leaf points of compound leaves: number within the leaf, else -1; NULL when there are none */
     size_t stem_count, petiole_count, leaf_count; /**< a petiole that was not seen is absent, so counts may differ */

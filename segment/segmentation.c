@@ -95,7 +95,7 @@ static plm_status result_leaflets(plm_segmentation *out, plm_error *error)
     return PLM_OK;
 }
 
-/* A caller who knows that there is no stem spares the search for one. */
+/* A caller who knows that there is no stem among tubes spares the search for one. */
 static bool may_have_stem(plm_habit habit)
 {
     return habit != PLM_HABIT_ROSETTE && habit != PLM_HABIT_HEAD && habit != PLM_HABIT_SINGLE_LEAF;
@@ -175,9 +175,9 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     out.noise = sketch.scale.noise;
     carry(&sketch, row, count, &out);
     out.leaf_count = sketch.leaf_count;
-    if (may_be_head(options->habit, &sketch)) status = plm_deadline_check(options->deadline, error);
-    if (status == PLM_OK && may_be_head(options->habit, &sketch))
-        status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
+    const bool heads = may_be_head(options->habit, &sketch);
+    if (heads) status = plm_deadline_check(options->deadline, error);
+    if (status == PLM_OK && heads) status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes) {
         status = plm_petiole_feet((const float(*)[3])xyz, row, count, &sketch, &out, error);
         if (status == PLM_OK) status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);

@@ -13,9 +13,11 @@ static const double LINK_COSINE = 0.9397;                   /* of the angle betw
 static const double LINK_OFF = 0.8;                         /* distance from the other's plane, in spacings, at most */
 enum { BUDGET = 45000, AREA_NEIGHBOURS = 12, LINK_NEIGHBOURS = 24, ROOM = 512 };
 
-/* Median over the points of the edge of a square that holds one: by the circle that holds so many. */
+/* Median over the points of the edge of a square that holds one: by the circle that holds so many. 0 where there are too few. */
 static plm_status find_spacing(const float (*xyz)[3], size_t count, double *spacing, plm_error *error)
 {
+    *spacing = 0;
+    if (count <= AREA_NEIGHBOURS) return PLM_OK;
     plm_scratch scratch = {.error = error};
     float *squared = plm_scratch_take(&scratch, count * AREA_NEIGHBOURS, sizeof *squared);
     float *last = plm_scratch_take(&scratch, count, sizeof *last);
@@ -41,6 +43,8 @@ static plm_status thin(const float (*xyz)[3], size_t count, double noise, plm_sh
     if (status == PLM_OK)
         status =
             find_spacing((const float(*)[3])surface->thinned.xyz, surface->thinned.count, &surface->spacing, error);
+    if (status == PLM_OK && !(surface->spacing > 0))
+        return plm_fail(error, PLM_E_DEGENERATE, "too few points for a surface");
     return status;
 }
 

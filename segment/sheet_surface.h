@@ -15,7 +15,8 @@ typedef struct plm_sheet_surface {
     plm_graph graph;    /**< of these, the ones that lie in each other's plane; may be in pieces */
 } plm_sheet_surface;
 
-/** noise: sigma across surfaces. The result is the caller's: plm_sheet_surface_free. PLM_E_MEMORY, or as plm_thin. */
+/** noise: sigma across surfaces. The result is the caller's: plm_sheet_surface_free. PLM_E_DEGENERATE where points are too few for
+ * one, PLM_E_MEMORY, or as plm_thin. */
 plm_status plm_sheet_surface_make(const float (*xyz)[3], size_t count, double noise, plm_sheet_surface *surface,
                                   plm_error *error);
 

@@ -14,6 +14,7 @@
 static const double RIM_GAP = 140; /* degrees of a point's surroundings without a neighbour: it is at the rim */
 static const double NECK = 0.45;   /* depth between two sheets over that of the lesser one, at most */
 static const double SHALLOW = 2;   /* spacings: what is less deep is no sheet */
+static const double RIMLESS = 100; /* spacings: depth of a closed piece */
 static const double LEAST = 0.002; /* share of the points that a sheet has */
 enum { FEWEST = 20, GAP_ROOM = 256 };
 
@@ -44,14 +45,17 @@ static bool is_rim(const plm_sheet_surface *surface, size_t i)
     return gap > plm_radians(RIM_GAP);
 }
 
-/* Distance of each point from the rim along the surface; INFINITY where no rim is reached. */
+/* Distance of each point from the rim along the surface. A closed piece has no rim: it is deep all over. */
 static plm_status find_depth(const plm_sheet_surface *surface, float *depth, uint32_t *source, plm_error *error)
 {
     size_t sources = 0;
     for (uint32_t i = 0; i < surface->graph.count; i++)
         if (is_rim(surface, i)) source[sources++] = i;
     const plm_walk walk = {.source = source, .source_count = sources, .distance = depth};
-    return plm_graph_walk(&surface->graph, &walk, error);
+    const plm_status status = plm_graph_walk(&surface->graph, &walk, error);
+    for (size_t i = 0; status == PLM_OK && i < surface->graph.count; i++)
+        if (!isfinite(depth[i])) depth[i] = (float)(RIMLESS * surface->spacing);
+    return status;
 }
 
 /* Points without a sheet get that of the nearest point along the surface; pieces that have none, of the nearest in space. */
@@ -95,7 +99,8 @@ plm_status plm_find_sheets(const plm_sheet_surface *surface, int32_t *sheet, siz
     float *reach = plm_scratch_take(&scratch, count, sizeof *reach);
     uint32_t *source = plm_scratch_take(&scratch, count, sizeof *source);
     plm_status status = scratch.failed ? PLM_E_MEMORY : find_depth(surface, depth, source, error);
-    /* A branch of the tree starts and ends where its tip is more than reach above: by a ratio of depths, that is. */
+    /* A branch of the tree ends where its tip is more than reach above a meeting: by a ratio of depths, that is. One that meets
+     * none counts if its tip is more than reach above 0, which is where the depth is SHALLOW. */
     const double ratio = -log(NECK), shallow = SHALLOW * surface->spacing;
     for (size_t i = 0; status == PLM_OK && i < count; i++) {
         reach[i] = (float)ratio;

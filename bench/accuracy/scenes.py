@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Scenes as they come: how often the organs of a virtual plant are found when scanner, sampling, noise and surroundings are drawn.
 
-    scenes.py --program PLANTIMETER -o OUT [--count N] [--seed S] [--least-exact SHARE]
+    scenes.py --program PLANTIMETER -o OUT [--count N] [--seed S] [--kinds A,B,...] [--least-exact SHARE]
 
 Draws N scenes (the same by the same seed): a kind of plant, a scanner, 5 000 to 200 000 points, noise, floaters, views, pot,
 table or neither, points or gaussians. Makes each by `plantimeter simulate`, measures it at default options, and writes
@@ -37,10 +37,10 @@ FIELDS = ("scene", "kind", "scanner", "surroundings", "options", "habit", "mean_
 WORST = 8
 
 
-def draw_scene(draw, number):
+def draw_scene(draw, number, kinds):
     """Kind, scanner, surroundings and options of simulate."""
-    kind = (SEEDLINGS + LARGE)[number % (len(SEEDLINGS) + len(LARGE))]
-    scanner = draw.choice(["dome", "uniform", "splat"] + (["rgbd"] if kind in SEEDLINGS else []))
+    kind = kinds[number % len(kinds)]
+    scanner = draw.choice(["dome", "uniform", "splat"] + (["rgbd"] if kind not in LARGE else []))
     options = ["--points", str(int(10 ** draw.uniform(3.7, 5.3)))]
     if scanner == "rgbd":
         options += ["--noise", f"{draw.uniform(0.2, 0.8):.2f}", "--views", str(draw.choice([6, 8, 12, 12, 20])),
@@ -96,11 +96,12 @@ def main():
     parser.add_argument("-o", "--out", required=True)
     parser.add_argument("--count", type=int, default=96)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kinds", default=",".join(SEEDLINGS + LARGE))
     parser.add_argument("--least-exact", type=float, default=0)
     options = parser.parse_args()
     draw, rows = random.Random(options.seed), []
     for number in range(options.count):
-        scene = draw_scene(draw, number)
+        scene = draw_scene(draw, number, options.kinds.split(","))
         rows.append(score_scene(options.program, options.out, f"{number:03d}", 1000 * options.seed + number, scene))
     with open(os.path.join(options.out, "scenes.csv"), "w", newline="") as file:
         writer = csv.DictWriter(file, FIELDS)
