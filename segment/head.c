@@ -57,40 +57,48 @@ static bool is_one_leaf(const head *h, const borders *b, const size_t *size, siz
     return near > 0 && along >= JOIN_SHARE * near && width >= JOIN_WIDTH * sqrt(lesser);
 }
 
+/* number: out, of each sheet, the same for all pieces of a leaf; from 0 on, in the order of their first pieces. Gives how many
+ * there are. */
+static size_t join_pairs(const head *h, const borders *b, const size_t *size, int32_t *number, int32_t *leaf)
+{
+    const size_t n = h->sheets;
+    size_t leaves = 0;
+    for (size_t p = 0; p < n; p++) number[p] = (int32_t)p;
+    for (size_t p = 0; p < n; p++)
+        for (size_t q = p + 1; q < n; q++) {
+            if (number[p] == number[q] || !is_one_leaf(h, b, size, p, q)) continue;
+            const int32_t from = number[q], to = number[p];
+            for (size_t k = 0; k < n; k++)
+                if (number[k] == from) number[k] = to;
+        }
+    for (size_t p = 0; p < n; p++) leaf[p] = -1;
+    for (size_t p = 0; p < n; p++) {
+        int32_t *of = &leaf[number[p]];
+        if (*of < 0) *of = (int32_t)leaves++;
+        number[p] = *of;
+    }
+    return leaves;
+}
+
 /* Joins the pieces of leaves; sheets are numbered anew. */
 static plm_status join_pieces(head *h, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    const size_t n = h->sheets;
+    const size_t n = h->sheets, points = h->surface->graph.count;
     borders b = {plm_scratch_take(&scratch, n * n + 1, sizeof *b.near),
                  plm_scratch_take(&scratch, n * n + 1, sizeof *b.along),
                  plm_scratch_take(&scratch, n * n + 1, sizeof *b.points)};
     uint32_t *seen = plm_scratch_take(&scratch, n + 1, sizeof *seen);
     size_t *size = plm_scratch_take(&scratch, n + 1, sizeof *size);
     int32_t *number = plm_scratch_take(&scratch, n + 1, sizeof *number);
+    int32_t *leaf = plm_scratch_take(&scratch, n + 1, sizeof *leaf);
     if (!scratch.failed) {
         count_borders(h, &b, seen);
-        for (size_t i = 0; i < h->surface->graph.count; i++)
+        for (size_t i = 0; i < points; i++)
             if (h->sheet[i] >= 0) size[h->sheet[i]]++;
-        size_t kept = 0;
-        for (size_t p = 0; p < n; p++) number[p] = (int32_t)p;
-        for (size_t p = 0; p < n; p++)
-            for (size_t q = p + 1; q < n; q++) {
-                if (number[p] == number[q] || !is_one_leaf(h, &b, size, p, q)) continue;
-                const int32_t from = number[q], to = number[p];
-                for (size_t k = 0; k < n; k++)
-                    if (number[k] == from) number[k] = to;
-            }
-        /* Numbers of joined sheets, in the order of their first pieces. */
-        for (size_t p = 0; p < n; p++) seen[p] = UINT32_MAX;
-        for (size_t p = 0; p < n; p++) {
-            const size_t of = (size_t)number[p];
-            if (seen[of] == UINT32_MAX) seen[of] = (uint32_t)kept++;
-            number[p] = (int32_t)seen[of];
-        }
-        for (size_t i = 0; i < h->surface->graph.count; i++)
+        h->sheets = join_pairs(h, &b, size, number, leaf);
+        for (size_t i = 0; i < points; i++)
             if (h->sheet[i] >= 0) h->sheet[i] = number[h->sheet[i]];
-        h->sheets = kept;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
@@ -134,41 +142,47 @@ static int by_height(const void *a, const void *b)
     return (p->sheet > q->sheet) - (p->sheet < q->sheet);
 }
 
-/* Numbers the leaves from the lowest foot up: the foot is the part nearest to the plant's middle. Sheets without a point off the
- * stem are none. largest: points of the largest; gives all of theirs. */
+/* Where the leaves are: each sheet's points off the stem, and the height of the one nearest to the plant's middle. nearest: scratch,
+ * one a sheet. */
+static void find_places(const head *h, leaf_place *place, double *nearest)
+{
+    const plm_thinned *thinned = &h->surface->thinned;
+    double middle[2] = {0, 0};
+    for (size_t i = 0; i < thinned->count; i++)
+        for (int a = 0; a < 2; a++) middle[a] += thinned->xyz[i][a] / (double)thinned->count;
+    for (int a = 0; a < 2 && h->stem.count; a++) middle[a] = h->stem.circle[h->stem.count - 1][a];
+    for (size_t k = 0; k < h->sheets; k++) place[k].sheet = (int32_t)k;
+    for (size_t i = 0; i < thinned->count; i++) {
+        const int32_t sheet = h->sheet[i];
+        if (sheet < 0 || h->on_stem[i]) continue;
+        const double distance = hypot(thinned->xyz[i][0] - middle[0], thinned->xyz[i][1] - middle[1]);
+        if (!place[sheet].size++ || distance < nearest[sheet]) {
+            nearest[sheet] = distance;
+            place[sheet].height = thinned->xyz[i][2];
+        }
+    }
+}
+
+/* Numbers the leaves from the lowest foot up; sheets without a point off the stem are none. largest: points of the largest leaf, all:
+ * of all. */
 static plm_status number_leaves(head *h, size_t *largest, size_t *all, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    const size_t count = h->surface->thinned.count;
     leaf_place *place = plm_scratch_take(&scratch, h->sheets + 1, sizeof *place);
     double *nearest = plm_scratch_take(&scratch, h->sheets + 1, sizeof *nearest);
     int32_t *number = plm_scratch_take(&scratch, h->sheets + 1, sizeof *number);
-    double middle[2] = {0, 0};
-    size_t leaves = 0;
     *largest = *all = 0;
-    for (size_t i = 0; !scratch.failed && i < count; i++)
-        for (int a = 0; a < 2; a++) middle[a] += h->surface->thinned.xyz[i][a] / (double)count;
-    for (int a = 0; a < 2 && h->stem.count; a++) middle[a] = h->stem.circle[h->stem.count - 1][a];
-    for (size_t k = 0; !scratch.failed && k < h->sheets; k++) place[k].sheet = (int32_t)k;
-    for (size_t i = 0; !scratch.failed && i < count; i++) {
-        if (h->sheet[i] < 0 || h->on_stem[i]) continue;
-        const float *p = h->surface->thinned.xyz[i];
-        leaf_place *at = &place[h->sheet[i]];
-        const double distance = hypot(p[0] - middle[0], p[1] - middle[1]);
-        if (!at->size || distance < nearest[h->sheet[i]]) {
-            nearest[h->sheet[i]] = distance;
-            at->height = p[2];
-        }
-        at->size++;
-        (*all)++;
-    }
     if (!scratch.failed) {
+        size_t leaves = 0;
+        find_places(h, place, nearest);
         qsort(place, h->sheets, sizeof *place, by_height);
         for (size_t k = 0; k < h->sheets; k++) {
             number[place[k].sheet] = place[k].size ? (int32_t)leaves++ : -1;
             if (place[k].size > *largest) *largest = place[k].size;
+            *all += place[k].size;
         }
-        for (size_t i = 0; i < count; i++) h->sheet[i] = h->sheet[i] < 0 || h->on_stem[i] ? -1 : number[h->sheet[i]];
+        for (size_t i = 0; i < h->surface->thinned.count; i++)
+            h->sheet[i] = h->sheet[i] < 0 || h->on_stem[i] ? -1 : number[h->sheet[i]];
         h->sheets = leaves;
     }
     plm_scratch_free(&scratch, NULL);

@@ -6,10 +6,9 @@
 
 #include "cloud/linear.h"
 #include "cloud/neighbours.h"
+#include "cloud/order.h"
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
-
-#include <stdlib.h>
 
 static const double RIM_GAP = 140; /* degrees of a point's surroundings without a neighbour: it is at the rim */
 static const double NECK = 0.45;   /* depth between two sheets over that of the lesser one, at most */
@@ -17,12 +16,6 @@ static const double SHALLOW = 2;   /* spacings: what is less deep is no sheet */
 static const double RIMLESS = 100; /* spacings: depth of a closed piece */
 static const double LEAST = 0.002; /* share of the points that a sheet has */
 enum { FEWEST = 20, GAP_ROOM = 256 };
-
-static int by_angle(const void *a, const void *b)
-{
-    const float *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
 
 /* Whether the linked neighbours of a point leave a wide gap in the directions around it. */
 static bool is_rim(const plm_sheet_surface *surface, size_t i)
@@ -39,7 +32,7 @@ static bool is_rim(const plm_sheet_surface *surface, size_t i)
         angle[angles++] = (float)atan2(plm_dot(d, v), plm_dot(d, u));
     }
     if (angles < 3) return true;
-    qsort(angle, angles, sizeof *angle, by_angle);
+    plm_order_sort(angle, angles);
     double gap = angle[0] + 2 * PLM_PI - angle[angles - 1];
     for (size_t k = 1; k < angles; k++) gap = fmax(gap, (double)angle[k] - angle[k - 1]);
     return gap > plm_radians(RIM_GAP);
