@@ -89,19 +89,15 @@ plm_status plm_find_sheets(const plm_sheet_surface *surface, int32_t *sheet, siz
     plm_scratch scratch = {.error = error};
     const size_t count = surface->graph.count;
     float *depth = plm_scratch_take(&scratch, count, sizeof *depth);
-    float *reach = plm_scratch_take(&scratch, count, sizeof *reach);
     uint32_t *source = plm_scratch_take(&scratch, count, sizeof *source);
     plm_status status = scratch.failed ? PLM_E_MEMORY : find_depth(surface, depth, source, error);
     /* A branch of the tree ends where its tip is more than reach above a meeting: by a ratio of depths, that is. One that meets
      * none counts if its tip is more than reach above 0, which is where the depth is SHALLOW. */
     const double ratio = -log(NECK), shallow = SHALLOW * surface->spacing;
-    for (size_t i = 0; status == PLM_OK && i < count; i++) {
-        reach[i] = (float)ratio;
+    for (size_t i = 0; status == PLM_OK && i < count; i++)
         depth[i] = depth[i] > 0 ? (float)(log(depth[i] / shallow) + ratio) : INFINITY;
-    }
     const size_t least = (size_t)fmax(FEWEST, LEAST * (double)count);
-    const plm_merge_rule rule = {.distance = depth, .reach = reach, .least = least};
-    if (status == PLM_OK) status = plm_merge_tree_by(&surface->graph, &rule, sheet, sheets, error);
+    if (status == PLM_OK) status = plm_merge_tree(&surface->graph, depth, ratio, least, sheet, sheets, error);
     if (status == PLM_OK) status = spread(surface, sheet, depth, source, error);
     plm_scratch_free(&scratch, NULL);
     return status;

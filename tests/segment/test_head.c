@@ -21,6 +21,7 @@ static label_score score_of(const char *kind, const plm_scan_options *options, p
     assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
                                   &error));
     *habit = made.found.habit;
+    if (*habit == PLM_HABIT_HEAD) assert_true(made.found.scale == 0 && made.found.petiole_count == 0);
     print_message("%s %d: habit %s, %zu leaves of %zu, F1 %.3f, stem %.3f, worst %.3f\n", kind, (int)options->seed,
                   plm_habit_name(made.found.habit), score.leaves_found, score.leaves, score.f1,
                   score.iou[PLM_LABEL_STEM], score.worst_leaf);
