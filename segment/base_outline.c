@@ -2,9 +2,10 @@
  * that ends at the junction, and each side of the blade begins there: as a wedge ahead of it (a base that narrows to the
  * petiole), straight to the side, or with a lobe that reaches back and whose edge leaves the petiole by a slope and bends
  * away. The points are taken for a Poisson process whose density is that of the petiole in the strip, of the blade within
- * the outline, and little elsewhere, all blurred by the noise; the junction is where the likelihood, over all outlines of
- * either side, is greatest. Where the noise is small beside the petiole, that a tube is thick and a blade is not counts as
- * well (base_thickness.c). */
+ * the outline, and little elsewhere, all blurred by the noise; the junction is the mean over what is likely, all outlines of
+ * either side taken together: in noise a narrow lobe that begins late is nearly as likely as a wide one that begins early,
+ * and the likeliest alone jumps between them. Where the noise is small beside the petiole, that a tube is thick and a blade
+ * is not counts as well (base_thickness.c). */
 #include "segment/blade_base.h"
 
 #include "segment/scratch.h"
@@ -24,7 +25,8 @@ static const double ELSEWHERE = 0.03; /* density beside the leaf, of the blade's
 static const double FAINTEST = 0.1;   /* density of the petiole, of the blade's, at least */
 /* Weight of the thickness: midribs are thick for a while, and neighbours' heights are not independent. */
 static const double THICKNESS = 0.3;
-static const double SWOLLEN = 1; /* SDs of the noise by which an outline seems to lie outward */
+static const double SWOLLEN = 1;   /* SDs of the noise by which an outline seems to lie outward */
+static const double UNLIKELY = 12; /* logarithm of how much less likely than the best a row is that does not count */
 /* Outlines: half width of the blade over the way ahead; slope of a lobe's edge, and its curvature over R. */
 static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
 static const double ROUND[] = {0.15, 0.3, 0.6, 1.2, 2.4};
@@ -41,7 +43,7 @@ enum {
     SEARCH_FROM = 46, /* rows: from 1.1 R before the first guess, ... */
     SEARCH_TO = 120,  /* ... to 2 R beyond, and IMAGE_ROWS hold all shifts */
     IMAGE_ROWS = ROWS + SEARCH_TO,
-    COARSE = 2, /* rows between first tries */
+    COARSE = 2, /* rows between first tries, a divisor of SEARCH_TO - SEARCH_FROM */
     KERNEL = 40,
     FEWEST = 5
 };
@@ -208,13 +210,6 @@ static double compare(const outline *o, int s, const image *m, int junction)
 
 /* ---- The search ------------------------------------------------------------------------------------------------- */
 
-/* Where a parabola through a value and those before and after it has its top, in steps from it. */
-static double top_of(double before, double at, double after)
-{
-    const double bend = before - 2 * at + after;
-    return bend < 0 && isfinite(bend) ? 0.5 * (before - after) / bend : 0;
-}
-
 /* What the search goes by. */
 typedef struct evidence {
     const plm_base_height *list;
@@ -223,38 +218,47 @@ typedef struct evidence {
     double expected;
 } evidence;
 
-/* Log likelihood of a junction at a row: either side with its best outline, thickness, and what was expected. */
+/* Logarithm of the mean likelihood of one side's points over the outlines, all alike beforehand. */
+static double side_evidence(const outline *o, int s, int junction)
+{
+    double value[OUTLINES], best = -INFINITY, sum = 0;
+    for (size_t which = 0; which < OUTLINES; which++) {
+        value[which] = compare(o, s, &o->image[which], junction);
+        best = fmax(best, value[which]);
+    }
+    for (size_t which = 0; which < OUTLINES; which++) sum += exp(value[which] - best);
+    return best + log(sum / OUTLINES);
+}
+
+/* Log likelihood of a junction at a row: the outlines of either side, thickness, and what was expected. */
 static double judge(const outline *o, const evidence *e, int junction)
 {
     const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_SD * -o->foot);
-    double sum = THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - 0.5 * off * off;
-    for (int s = 0; s < 2; s++) {
-        double best = -INFINITY;
-        for (size_t which = 0; which < OUTLINES; which++) best = fmax(best, compare(o, s, &o->image[which], junction));
-        sum += best;
-    }
-    return sum;
+    const double sides = side_evidence(o, 0, junction) + side_evidence(o, 1, junction);
+    return sides + THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - 0.5 * off * off;
 }
 
-/* Every COARSE-th row, then the rows about the best of them. */
+/* Mean of the junction: every COARSE-th row, then those between likely ones. */
 static double search(const outline *o, const evidence *e)
 {
-    double total[SEARCH_TO + 1];
-    int best = SEARCH_FROM;
+    double total[SEARCH_TO + 1], best = -INFINITY, sum = 0, mean = 0;
     for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) total[k] = -INFINITY;
-    for (int k = SEARCH_FROM; k < SEARCH_TO; k += COARSE) {
+    for (int k = SEARCH_FROM; k <= SEARCH_TO; k += COARSE) {
         total[k] = judge(o, e, k);
-        if (total[k] > total[best]) best = k;
+        best = fmax(best, total[k]);
     }
-    const int low = best - COARSE > SEARCH_FROM ? best - COARSE : SEARCH_FROM;
-    const int high = best + COARSE < SEARCH_TO ? best + COARSE : SEARCH_TO - 1;
-    for (int k = low; k <= high; k++) {
-        if (!isfinite(total[k])) total[k] = judge(o, e, k);
-        if (total[k] > total[best]) best = k;
+    for (int k = SEARCH_FROM; k < SEARCH_TO; k++) {
+        const int before = SEARCH_FROM + (k - SEARCH_FROM) / COARSE * COARSE, after = before + COARSE;
+        if (k == before || fmax(total[before], total[after]) < best - UNLIKELY) continue;
+        total[k] = judge(o, e, k);
     }
-    const bool inner = best > low && best < high;
-    const double part = inner ? top_of(total[best - 1], total[best], total[best + 1]) : 0;
-    return (best + part) * o->step - BACK * o->view->scale;
+    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) best = fmax(best, total[k]);
+    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) {
+        const double weight = total[k] < best - UNLIKELY ? 0 : exp(total[k] - best);
+        sum += weight;
+        mean += weight * k;
+    }
+    return mean / sum * o->step - BACK * o->view->scale;
 }
 
 plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error)

@@ -17,6 +17,7 @@ enum { FEWEST_POINTS = 12, MOST_POINTS = 4000, FEWEST_TUBE_POINTS = 30, MOST_SPA
 
 static const double least_angle = 0.03;  /* radians between petiole and stem */
 static const double shallow_angle = 0.2; /* below, the crossing alone tells no base */
+static const double bends_away = 0.35;   /* radians from the stem to which a petiole that begins along it soon bends */
 static const double end_share = 0.02;    /* points that stand for an end at the start */
 static const double radii_per_span = 25;
 static const double sharp = 0.2, seen = 0.6; /* residuals over the radius, directions seen: a tube beats centroids */
@@ -202,16 +203,16 @@ static double angle_to_stem(const petiole *p, const plm_curve *line, double t)
     return acos(fmin(fabs(plm_dot(tangent, stem)), 1));
 }
 
-/* Parameter at which the line, followed inwards from t, first comes within clearance of the stem's surface: found in
- * steps, as a line that misses the stem's middle leaves it again. Gives low where it never comes that near before low. */
-static double approach(const petiole *p, const plm_curve *line, double clearance, double t, double low)
+/* Parameter at which the line, followed inwards from t, first comes to the stem's surface: found in steps, as a line that
+ * misses the stem's middle leaves it again. NAN where it comes to none before low. */
+static double crossing_of(const petiole *p, const plm_curve *line, double t, double low)
 {
     const double step = 0.25 * p->stem->axis->radius / line->half;
     double point[3], foot, outer = t;
     for (;; outer -= step) {
-        if (outer <= low) return low;
+        if (outer <= low) return NAN;
         plm_curve_point(line, outer, point);
-        if (off_stem(p->stem->axis, point, &foot) <= clearance) break;
+        if (off_stem(p->stem->axis, point, &foot) <= 0) break;
     }
     if (outer == t) return t;
     double inner = outer;
@@ -219,7 +220,7 @@ static double approach(const petiole *p, const plm_curve *line, double clearance
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = 0.5 * (inner + outer);
         plm_curve_point(line, middle, point);
-        if (off_stem(p->stem->axis, point, &foot) > clearance)
+        if (off_stem(p->stem->axis, point, &foot) > 0)
             outer = middle;
         else
             inner = middle;
@@ -309,25 +310,26 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 
 /* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
  * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
- * 1 / sin(angle) of any error of the stem's radius. Where the labels are our own what is near to the stem is called stem,
- * and the first points lie later (by 0.7 to 1.3 mm in the middle over simulated plants): of a sharp tube that is not nearly
- * along the stem the crossing tells alone. Without stem: the first points. */
+ * 1 / sin(angle) of any error of the stem's radius, and a line that passes the stem by tells nothing. Where the labels are our
+ * own what lies within the margin of the stem is called stem, and the first points lie later by margin / sin(angle): of a
+ * sharp tube that is not nearly along the stem the crossing tells alone. Without stem: the first points. */
 static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
 {
     if (!p->stem) return first;
     const plm_axis *stem = p->stem->axis;
     const double t = plm_curve_walk(line, 0, first.position);
-    const double angle = fmax(angle_to_stem(p, line, t), least_angle);
-    const double half_cut = radius_at(p, t) / tan(fmax(angle, 0.35)); /* petioles bend away soon */
+    const double angle = fmax(angle_to_stem(p, line, t), least_angle), bent = fmax(angle, bends_away);
+    const double half_cut = radius_at(p, t) / tan(bent);
     const double crossing_error = (0.1 * stem->radius + 0.3 * (p->noise + stem->noise)) / sin(angle);
     const double first_error = 0.4 * half_cut + 0.2 * p->radius + 0.5 * p->noise + first.std_error;
     const double high = plm_curve_walk(line, t, 2 * half_cut + 3 * (crossing_error + first_error));
     const double low = plm_curve_walk(line, t, -3 * (crossing_error + first_error));
-    const double crossing = plm_curve_length(line, 0, approach(p, line, 0, high, low));
+    const double behind = first.position + half_cut - p->margin / sin(bent), at = crossing_of(p, line, high, low);
+    if (isnan(at)) return (plm_end){behind, first_error};
+    const double crossing = plm_curve_length(line, 0, at);
     const double crossing_weight = 1 / (crossing_error * crossing_error),
                  first_weight = 1 / (first_error * first_error);
     const double sum = crossing_weight + first_weight;
-    const double behind = first.position + half_cut;
     if (p->own && line == &p->tube.axis && angle > shallow_angle)
         return (plm_end){crossing, fmax(crossing_error, 0.25 * fabs(crossing - behind))};
     return (plm_end){(crossing_weight * crossing + first_weight * behind) / sum,

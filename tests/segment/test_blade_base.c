@@ -82,11 +82,12 @@ static void without_noise_the_border_is_told_to_a_tenth_of_R(void **state)
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 8, 0) < 0.45);
 }
 
-/* Half a millimetre of noise fills the end of a sinus: its edges tell where it was. */
+/* Half a millimetre of noise fills the end of a sinus: its edges tell where it was. The likeliest junction alone was off by 0.8
+ * to 1 mm at four of the shapes. */
 static void in_noise_the_outline_tells_it(void **state)
 {
     (void)state;
-    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 4, 0.0005) < 1.5);
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 4, 0.0005) < 0.8);
 }
 
 static void too_little_tells_none(void **state)

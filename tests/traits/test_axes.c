@@ -158,6 +158,36 @@ static void a_petiole_ends_where_its_blade_begins(void **unused)
     plm_measurement_free(&plant);
 }
 
+/* A petiole that stands beside the stem, whose line passes it by: the farthest place at which a crossing was sought stood for
+ * one, and the petiole was 1.2 mm too long. */
+static void a_line_that_passes_the_stem_by_tells_no_base(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_cloud cloud;
+    uint64_t state = 9;
+    static double xyz[STEM + PETIOLE][3];
+    assert_ok(plm_cloud_create(STEM + PETIOLE, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    const test_tube stem = {.end = {0, 0, stem_length}, .radius = {stem_radius, stem_radius}, .arc = {0, 2 * PLM_PI}};
+    const double beside = 1.2 * stem_radius, tilt = plm_radians(65);
+    const test_tube petiole = {
+        .base = {beside, 0, 0.05},
+        .end = {beside, petiole_length * sin(tilt), 0.05 + petiole_length * cos(tilt)},
+        .radius = {petiole_radius, petiole_radius},
+        .arc = {0, 2 * PLM_PI},
+    };
+    test_tube_points(&stem, STEM, &state, xyz);
+    test_tube_points(&petiole, PETIOLE, &state, xyz + STEM);
+    for (size_t i = 0; i < cloud.count; i++) {
+        for (int k = 0; k < 3; k++) cloud.xyz[i][k] = (float)xyz[i][k];
+        cloud.label[i] = i < STEM ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE, cloud.organ[i] = 0;
+    }
+    plm_measurement plant = measure(&cloud);
+    print_message("length %.2f mm\n", 1e3 * find(&plant, "petiole_length", 0)->value);
+    assert_near(find(&plant, "petiole_length", 0)->value, petiole_length, 6e-4);
+    plm_measurement_free(&plant);
+}
+
 /* A topmost petiole that goes up along the stem's side before it bends outward: where its line crosses the stem's surface is
  * nearly anywhere, and its first points tell the base. */
 static void a_petiole_along_the_stem_begins_near_its_first_points(void **unused)
@@ -339,6 +369,7 @@ int main(void)
         cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
         cmocka_unit_test(fits_tell_steps_condition_and_end),
         cmocka_unit_test(a_petiole_ends_where_its_blade_begins),
+        cmocka_unit_test(a_line_that_passes_the_stem_by_tells_no_base),
         cmocka_unit_test(a_petiole_along_the_stem_begins_near_its_first_points),
         cmocka_unit_test(noise_is_covered_by_the_standard_errors),
         cmocka_unit_test(strays_to_all_sides_are_no_end),

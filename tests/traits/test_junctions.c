@@ -97,18 +97,6 @@ static void a_long_petiole_is_not_the_stem(void **state)
     assert_true(stem < 4);
 }
 
-/* Points of a petiole near to the stem are called stem: with the first points as they were, the petiole of a seed leaf
- * began too late and was 0.48 degrees off. */
-static void a_clean_petiole_begins_at_the_stems_surface(void **state)
-{
-    (void)state;
-    double degrees, stem;
-    errors_of("eggplant", 9201, &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 9201, .points = 45000},
-              &degrees, &stem);
-    print_message("eggplant: stem off by %.2f mm, petioles by %.2f degrees at most\n", stem, degrees);
-    assert_true(degrees < 0.3);
-}
-
 /* The gaps beside the petiole, carried on to where they close, led too far into the blade: 0.54 degrees. */
 static void a_sinus_ends_near_to_where_the_blade_widens(void **state)
 {
@@ -120,36 +108,62 @@ static void a_sinus_ends_near_to_where_the_blade_widens(void **state)
     assert_true(degrees < 0.3);
 }
 
-/* Largest error of the petioles of 20 mm and more, in degrees: below that half a millimetre of noise decides. */
-static double error_of_long_ones(const char *kind, uint64_t seed, const plm_scan_options *options)
+typedef struct squares {
+    double sum;
+    size_t count;
+} squares;
+
+/* Adds the squares of the errors, in degrees, of the petioles from a length on. */
+static void add_petioles(const char *kind, const plm_scan_options *options, double shortest, squares *errors)
 {
     plm_error error = {0};
     plm_virtual_plant plant;
-    assert_ok(plm_plant_grow(kind, &(plm_plant_options){.seed = seed}, &plant, &error));
+    assert_ok(plm_plant_grow(kind, &(plm_plant_options){.seed = options->seed}, &plant, &error));
     plm_measurement measurement = measure(&plant, options);
-    double most = 0;
     for (size_t i = 0; i < plant.petiole_count; i++) {
-        if (plant.petiole[i].length < 0.02) continue;
+        if (plant.petiole[i].length < shortest) continue;
         double nearest = INFINITY;
         for (size_t k = 0; k < measurement.value_count; k++)
             if (!strcmp(measurement.value[k].trait->name, "petiole_inclination"))
                 nearest = fmin(nearest, fabs(measurement.value[k].estimate.value - plant.petiole[i].inclination));
-        most = fmax(most, plm_degrees(nearest));
+        errors->sum += plm_degrees(nearest) * plm_degrees(nearest);
+        errors->count++;
     }
     plm_measurement_free(&measurement);
     plm_virtual_plant_free(&plant);
-    return most;
 }
 
-/* What is near to the stem's surface is called stem, and the line at the foot was pulled off it. */
+/* Points of a petiole near to the stem are called stem: with the first points as they were, petioles began too late, and
+ * RMSE was 0.25 degrees. */
+static void a_clean_petiole_begins_at_the_stems_surface(void **state)
+{
+    (void)state;
+    squares errors = {0};
+    const plm_scan_options dome = {.scanner = PLM_SCANNER_DOME, .points = 45000};
+    plm_scan_options one = dome, other = dome;
+    one.seed = 9001, other.seed = 9101;
+    add_petioles("eggplant", &one, 0, &errors);
+    add_petioles("eggplant", &other, 0, &errors);
+    add_petioles("pepper", &other, 0, &errors);
+    const double rms = sqrt(errors.sum / (double)errors.count);
+    print_message("petioles of three plants: RMSE %.3f degrees (%zu)\n", rms, errors.count);
+    assert_true(rms < 0.23);
+}
+
+/* What is near to the stem's surface is called stem, and the line at the foot was pulled off it: petioles of 20 mm and more,
+ * as below half a millimetre of noise decides, were off by 0.97 degrees. */
 static void a_noisy_foot_is_balanced_for_what_is_called_stem(void **state)
 {
     (void)state;
-    const plm_scan_options rgbd = {
-        .scanner = PLM_SCANNER_RGBD, .seed = 9001, .points = 45000, .noise = 0.0005, .outliers = 0.005};
-    const double degrees = error_of_long_ones("pepper", 9001, &rgbd);
-    print_message("pepper: petioles of 20 mm and more by %.2f degrees at most\n", degrees);
-    assert_true(degrees < 0.8);
+    squares errors = {0};
+    for (uint64_t seed = 9001; seed <= 9002; seed++) {
+        const plm_scan_options rgbd = {
+            .scanner = PLM_SCANNER_RGBD, .seed = seed, .points = 45000, .noise = 0.0005, .outliers = 0.005};
+        add_petioles("pepper", &rgbd, 0.02, &errors);
+    }
+    const double rms = sqrt(errors.sum / (double)errors.count);
+    print_message("two peppers: petioles of 20 mm and more, RMSE %.2f degrees (%zu)\n", rms, errors.count);
+    assert_true(rms < 0.8);
 }
 
 int main(void)
