@@ -23,8 +23,8 @@ typedef struct plm_base_view {
     double noise;
 } plm_base_view;
 
-/** Place along the petiole at which the blade begins, by maximum likelihood (see base_outline.c); expected: where it is
- * thought to be. NAN where petiole or blade have too few points. PLM_E_MEMORY. */
+/** Place along the petiole at which the blade begins, the mean over what is likely (see base_outline.c); expected: where it is
+ * thought to be beforehand. NAN where petiole or blade have too few points. PLM_E_MEMORY. */
 plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error);
 
 /** A point in the petiole's strip. */

@@ -14,10 +14,13 @@
 
 static const double WINDOW = 3;                         /* in steps of a working cell */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
-static const double WIDE = 1.6;        /* widths of the tube: a station beyond is blade, one below is tube */
-static const double TUBE_SHARE = 0.5;  /* of a station's points: it is of tube */
-static const double FULL = 0.5;        /* of the points that the tube's stations have */
-static const double LONG_RUN = 2.5;    /* windows: a narrow stretch of this length is tube, however few its points */
+static const double WIDE = 1.6;       /* widths of the tube: a station beyond is blade, one below is tube */
+static const double TUBE_SHARE = 0.5; /* of a station's points: it is of tube */
+static const double FULL = 0.5;       /* of the points that the tube's stations have */
+static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this length is tube, however few its points */
+/* Share of the leaf's points that its last leaflet holds at least where balls find no tube before it; and beyond a stretch of
+ * less than so many windows. */
+static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
 static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
 static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
@@ -213,9 +216,29 @@ static double tube_count(const work *w, size_t first)
     return count ? plm_quantile(w->value, count, 0.5) : 0;
 }
 
-/* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first
- * stretch as long as a window that is narrow, and either long or as full as a tube: a leaflet's torn tip hangs on a few
- * points. */
+/* Share of the leaf's points beyond a station. */
+static double share_beyond(const plm_leaf_way *way, size_t station)
+{
+    size_t k = way->count;
+    while (k > 0 && way->distance[way->order[k - 1]] >= (double)station * way->step) k--;
+    return (double)(way->count - k) / (double)way->count;
+}
+
+/* Whether the narrow stations [begin, split) are rachis: a stretch as long as a window that is long or as full as a tube.
+ * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf. */
+static bool is_rachis(const work *w, size_t begin, size_t split, double typical)
+{
+    const plm_leaf_way *way = &w->way;
+    const double run = (double)(split - begin);
+    double points = 0, tubes = 0;
+    for (size_t k = begin; k < split; k++) points += way->station[k].count, tubes += way->station[k].tube;
+    if (run < WINDOW || (run < LONG_RUN * WINDOW && points < FULL * typical * run)) return false;
+    if (tubes > TUBE_SHARE * run) return true;
+    return share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
+}
+
+/* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first narrow
+ * stretch that is rachis. */
 static size_t last_split(const work *w, size_t first)
 {
     const plm_leaf_way *way = &w->way;
@@ -228,10 +251,8 @@ static size_t last_split(const work *w, size_t first)
             continue;
         }
         const size_t split = k;
-        double points = 0;
-        for (; k > first && way->station[k - 1].width <= limit; k--) points += way->station[k - 1].count;
-        const double run = (double)(split - k);
-        if (run >= WINDOW && (run >= LONG_RUN * WINDOW || points >= FULL * typical * run)) return split;
+        while (k > first && way->station[k - 1].width <= limit) k--;
+        if (is_rachis(w, k, split, typical)) return split;
     }
     return first;
 }

@@ -204,16 +204,20 @@ static double angle_to_stem(const petiole *p, const plm_curve *line, double t)
 }
 
 /* Parameter at which the line, followed inwards from t, first comes to the stem's surface: found in steps, as a line that
- * misses the stem's middle leaves it again. NAN where it comes to none before low. */
+ * misses the stem's middle leaves it again. low where it comes to it only beyond low, t where it is inside there already, NAN
+ * where it passes the stem by. */
 static double crossing_of(const petiole *p, const plm_curve *line, double t, double low)
 {
     const double step = 0.25 * p->stem->axis->radius / line->half;
-    double point[3], foot, outer = t;
+    double point[3], foot, outer = t, before = INFINITY;
     for (;; outer -= step) {
-        if (outer <= low) return NAN;
         plm_curve_point(line, outer, point);
-        if (off_stem(p->stem->axis, point, &foot) <= 0) break;
+        const double off = off_stem(p->stem->axis, point, &foot);
+        if (off <= 0) break;
+        if (outer <= low && !(off < before)) return NAN;
+        before = off;
     }
+    if (outer <= low) return low;
     if (outer == t) return t;
     double inner = outer;
     outer += step;
@@ -311,8 +315,8 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 /* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
  * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
  * 1 / sin(angle) of any error of the stem's radius, and a line that passes the stem by tells nothing. Where the labels are our
- * own what lies within the margin of the stem is called stem, and the first points lie later by margin / sin(angle): of a
- * sharp tube that is not nearly along the stem the crossing tells alone. Without stem: the first points. */
+ * own what lies within the margin of the stem is called stem, and the first points lie later by margin / sin(angle) in noise;
+ * of a sharp tube, for which no margin is known, the crossing tells alone where it is not nearly along the stem. Without stem: the first points. */
 static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
 {
     if (!p->stem) return first;
