@@ -18,8 +18,8 @@ static const double WIDE = 1.6;       /* widths of the tube: a station beyond is
 static const double TUBE_SHARE = 0.5; /* of a station's points: it is of tube */
 static const double FULL = 0.5;       /* of the points that the tube's stations have */
 static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this length is tube, however few its points */
-/* Share of the leaf's points that its last leaflet holds at least where balls find no tube before it; and beyond a stretch of
- * less than so many windows. */
+/* Share of the leaf's points that its last leaflet holds at least where balls find no tube before it, and the share where
+ * the narrow stretch before it is shorter than so many windows. */
 static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
 static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */

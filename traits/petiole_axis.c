@@ -314,9 +314,10 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 
 /* Base: where the line crosses the stem's surface, and, as the oblique cut begins r cot(angle) before the crossing, that
  * far behind the first points. The two are weighed by what is known of them: at shallow angles the crossing moves by
- * 1 / sin(angle) of any error of the stem's radius, and a line that passes the stem by tells nothing. Where the labels are our
- * own what lies within the margin of the stem is called stem, and the first points lie later by margin / sin(angle) in noise;
- * of a sharp tube, for which no margin is known, the crossing tells alone where it is not nearly along the stem. Without stem: the first points. */
+ * 1 / sin(angle) of any error of the stem's radius, and a line that passes the stem by tells nothing. Where the labels are
+ * our own what lies within the margin of the stem is called stem, and in noise the first points lie later by
+ * margin / sin(angle); of a sharp tube, for which no margin is known, the crossing tells alone where it is not nearly along
+ * the stem. Without stem: the first points. */
 static plm_end find_base(const petiole *p, const plm_curve *line, plm_end first)
 {
     if (!p->stem) return first;
