@@ -90,7 +90,7 @@ Points sample(const Leaf &leaf, size_t count, double noise, Noise kind, double l
 
 double own_area(const Points &points)
 {
-    const plm_surface_options options = {0, -1, -1, 0, 0};
+    const plm_surface_options options = {0, -1, -1, 0, 0, 0};
     plm_leaf_surface surface;
     plm_error error;
     const auto *xyz = reinterpret_cast<const float(*)[3]>(points.data());

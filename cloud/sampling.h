@@ -13,6 +13,10 @@ typedef struct plm_sampling {
     double extent;  /**< of splats: median of the mean of the two larger scales (a); 0 else, and 0 from
                          plm_sampling_measure: the caller knows it */
     bool fused;     /**< points are voxel means (they keep apart) */
+    /** The voxels, where they are known (cloud/voxel_pitch.h): their edge, and how strongly the points gather about their
+     * middles, mean of the two axes along which they do more: 0 for one pixel a voxel, 0.3 to 0.7 for a few to many. 0 else, and
+     * 0 from plm_sampling_measure: the caller knows them of the whole cloud. */
+    double pitch, gathering;
 } plm_sampling;
 
 /** The spacing that a share of count points stay below (0.9: that of the sparser parts): at each of some 6000 points,

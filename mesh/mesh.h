@@ -40,6 +40,7 @@ typedef struct plm_surface_options {
     double alpha;  /**< radius of the alpha shape's circumcircles, metres; 0: from the spacing, at the area's plateau */
     double noise;  /**< sigma of the points, metres; < 0: measured */
     int fused;     /**< points are voxel means: 1 yes, 0 no, -1 found out */
+    double voxel;  /**< edge of the voxels whose means the points are, metres; 0: not known */
     double extent; /**< splats: median larger scale of the gaussians, metres; 0: not a splat */
     uint64_t seed;
 } plm_surface_options;

@@ -56,7 +56,7 @@ static bool underside_of(const plm_scene *scene, const plm_axis *axis, const dou
 {
     double diameter, diameter_error;
     if (!isfinite(axis->radius_error)) return false; /* no tube was found */
-    plm_tube_deflate(2 * axis->radius, 2 * axis->radius_error, axis->noise, scene->sampling.fused, &diameter,
+    plm_tube_deflate(2 * axis->radius, 2 * axis->radius_error, axis->noise, &scene->sampling, &diameter,
                      &diameter_error);
     const double t = nearest_to_vertical(axis, foot);
     double at[3], tangent[3];

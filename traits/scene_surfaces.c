@@ -9,6 +9,7 @@ static plm_status make_surface(const plm_scene *scene, plm_organ *leaf)
     const plm_surface_options options = {.alpha = scene->options->alpha,
                                          .noise = leaf->index ? leaf->sampling.noise : -1,
                                          .fused = scene->plant_index ? scene->sampling.fused : -1,
+                                         .voxel = scene->sampling.pitch,
                                          .extent = leaf->sampling.extent,
                                          .seed = scene->options->seed};
     plm_error trouble = {0};

@@ -18,6 +18,9 @@ static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflat
  * as a whole. At small noise that adds more than the noise of single points does: so many spreads to the diameter, and so many
  * as an SD between plants (52 virtual stems of 2-4 mm from 12 views). */
 static const double view_inflation = 0.38, view_error = 0.22;
+/* The more pixels a voxel has, the farther out one of them makes a voxel: per gathering (plm_sampling) and spread squared over the
+ * diameter. */
+static const double pixel_inflation = 2.3;
 /* Residuals over the radius from which fused inflation and its uncertainty grow. */
 static const double thick_noise = 0.3, very_thick_noise = 0.45;
 static const double model_error = 0.0015;   /* facets, roundness: share of the diameter */
@@ -30,14 +33,17 @@ static const double unresolved = 4; /* diameter over spread below which the ring
 static const double unresolved_error =
     0.15; /* share of the diameter that is left open then: measured on virtual petioles */
 
-void plm_tube_deflate(double fit, double fit_error, double spread, bool fused, double *diameter, double *std_error)
+void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,
+                      double *std_error)
 {
+    const bool fused = sampling->fused;
     const double thickness = 2 * spread / fit;
     const double inflation =
         fused ? fmin(inflation_fused + 3 * fmax(0, thickness - thick_noise), inflation_fused_most) : inflation_plain;
     const double inflation_error =
         fused ? inflation_fused_error + fmax(0, thickness - very_thick_noise) : inflation_plain_error;
-    const double excess = fmax(4 * inflation * spread * spread / fit, fused ? view_inflation * spread : 0);
+    const double pixels = pixel_inflation * sampling->gathering * spread * spread / fit;
+    const double excess = fmax(4 * inflation * spread * spread / fit, fused ? view_inflation * spread : 0) + pixels;
     const double d = fmax(fit - excess, 0.3 * fit);
     const double noise_error = fmax(4 * inflation_error * spread * spread / d, fused ? view_error * spread : 0);
     *diameter = d;
@@ -111,7 +117,7 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
             "the points scatter by %.2f mm about a tube of %.2f mm (%.2f mm along the petiole): its "
             "ring is not resolved; a scan with less noise is needed",
             1e3 * tube.spread, 1e3 * fit, 2e3 * organ->axis->radius);
-    plm_tube_deflate(fit, 2 * fit_error, tube.spread, scene->sampling.fused, &out->value, &out->std_error);
+    plm_tube_deflate(fit, 2 * fit_error, tube.spread, &scene->sampling, &out->value, &out->std_error);
     if (out->value < unresolved * tube.spread) {
         out->flags |= PLM_FLAG_LOW_DENSITY;
         out->std_error = hypot(out->std_error, unresolved_error * out->value);

@@ -6,9 +6,10 @@
 
 /** What noise adds to a fitted tube: noise across the normal and points beyond the surface move the fitted circle out.
  * fit, fit_error: fitted diameter and its standard error; spread: SD of the inlying residuals. Gives the diameter without
- * it and its standard error. fused: the points are voxel means, which weigh a voxel that one stray pixel hit like one
- * that fifty hit, and so inflate more. */
-void plm_tube_deflate(double fit, double fit_error, double spread, bool fused, double *diameter, double *std_error);
+ * it and its standard error. sampling: the plant's: voxel means weigh a voxel that one stray pixel hit like one that fifty
+ * hit, and so inflate more, the more pixels there are. */
+void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,
+                      double *std_error);
 
 /** Diameter at parameter t of an organ's axis, from a tube (quadratic axis, linear radius) fitted to its points within
  * reach (m along the axis) to both sides. Fills value, std_error, point_count, method, flags, or a reason to fail. */

@@ -2,7 +2,7 @@
 """Errors and coverage of all traits over a population of virtual plants, with the program's own labels and with true ones.
 
     population.py --program PLANTIMETER -o OUT [--kinds A,B] [--count N] [--seed S] [--modes clean,rgbd,splat]
-                  [--points N] [--noise MM] [--bounds FILE]
+                  [--points N] [--noise MM] [--image-width PIXELS] [--bounds FILE]
     population.py --program PLANTIMETER -o OUT --folder DIR...      plants that are there already, one folder a mode
 
 Makes N plants of each kind and mode by `plantimeter simulate`, measures each twice (own: segmented by the program; true:
@@ -48,6 +48,8 @@ def make_plants(options, out):
                    str(options.seed), *SCANNER[mode], "--points", str(options.points), "-q", "-o", folder]
         if mode != "clean":
             command += ["--noise", str(options.noise)]
+        if mode == "rgbd" and options.image_width:
+            command += ["--image-width", str(options.image_width)]
         subprocess.run(command, check=True)
         folders.append(folder)
     return folders
@@ -206,6 +208,7 @@ def main():
     parser.add_argument("--modes", default="clean,rgbd,splat")
     parser.add_argument("--points", type=int, default=45000)
     parser.add_argument("--noise", type=float, default=0.5)
+    parser.add_argument("--image-width", type=int, help="of depth cameras: the wider, the more pixels a voxel has")
     parser.add_argument("--folder", nargs="+")
     parser.add_argument("--bounds")
     options = parser.parse_args()
