@@ -45,16 +45,23 @@ static phase phase_of(double turns)
     return (phase){cos(2 * PLM_PI * turns), sin(2 * PLM_PI * turns)};
 }
 
+static void add(phase *sum, phase wave)
+{
+    sum->cosine += wave.cosine;
+    sum->sine += wave.sine;
+}
+
+static double squared_length(phase sum)
+{
+    return sum.cosine * sum.cosine + sum.sine * sum.sine;
+}
+
 /* Length of the mean wave. */
 static double line_height(const coordinates *along, double frequency)
 {
     phase sum = {0, 0};
-    for (size_t i = 0; i < along->count; i++) {
-        const phase wave = phase_of(frequency * along->value[i]);
-        sum.cosine += wave.cosine;
-        sum.sine += wave.sine;
-    }
-    return sqrt(sum.cosine * sum.cosine + sum.sine * sum.sine) / (double)along->count;
+    for (size_t i = 0; i < along->count; i++) add(&sum, phase_of(frequency * along->value[i]));
+    return sqrt(squared_length(sum)) / (double)along->count;
 }
 
 static double power_at(const coordinates axis[3], double frequency)
@@ -82,11 +89,10 @@ static void measure_spectrum(const coordinates axis[3], double low, double step,
             phase sum = {0, 0};
             for (size_t i = 0; i < n; i++) {
                 const phase w = wave[i], t = turn[i];
-                sum.cosine += w.cosine;
-                sum.sine += w.sine;
+                add(&sum, w);
                 wave[i] = (phase){w.cosine * t.cosine - w.sine * t.sine, w.cosine * t.sine + w.sine * t.cosine};
             }
-            power[line] += (sum.cosine * sum.cosine + sum.sine * sum.sine) / ((double)n * (double)n);
+            power[line] += squared_length(sum) / ((double)n * (double)n);
         }
     }
 }
@@ -212,13 +218,9 @@ void plm_voxel_gathering(const float (*xyz)[3], size_t count, double pitch, doub
     const double n = (double)count;
     for (int k = 0; k < 3; k++) {
         phase sum = {0, 0};
-        for (size_t i = 0; i < count; i++) {
-            const phase wave = phase_of((double)xyz[i][k] / pitch);
-            sum.cosine += wave.cosine;
-            sum.sine += wave.sine;
-        }
+        for (size_t i = 0; i < count; i++) add(&sum, phase_of((double)xyz[i][k] / pitch));
         /* Chance makes the squared length of the sum too large by one for each point. */
-        const double squares = fmax(sum.cosine * sum.cosine + sum.sine * sum.sine - n, 0);
+        const double squares = fmax(squared_length(sum) - n, 0);
         gathering[k] = count > 1 ? fmin(sqrt(squares / (n * (n - 1))), 1) : 0;
     }
 }

@@ -88,8 +88,6 @@ static plm_status index_points(const float (*xyz)[3], size_t count, const bool *
     status = plm_sampling_measure(*index, xyz, count, fused, &measured, error);
     if (status != PLM_OK) return status == PLM_E_DEGENERATE ? PLM_OK : status;
     measured.extent = sampling->extent;
-    measured.pitch = sampling->pitch;
-    measured.gathering = sampling->gathering;
     *sampling = measured;
     return PLM_OK;
 }
@@ -200,8 +198,6 @@ static plm_status index_organs(plm_scene *scene, plm_error *error)
 #pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < scene->organ_count; i++) {
         plm_organ *organ = &scene->organ[i];
-        organ->sampling.pitch = scene->sampling.pitch;
-        organ->sampling.gathering = scene->sampling.gathering;
         if (scene->is_splat)
             status[i] = median_extent(scene->cloud, organ->row, organ->count, &organ->sampling.extent, NULL);
         if (status[i] == PLM_OK)
