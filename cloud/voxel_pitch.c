@@ -28,6 +28,7 @@ static const double least_power = 0.04, least_ratio = 8.0;
 static const double least_line = 0.035, least_middle = 0.5;
 /* Mean gathering of the better two axes above which the coordinates are the grid's own. */
 static const double own_grid = 0.95;
+static const double least_noise = 0.12; /* of the pitch: depth cameras have 0.2 and more */
 
 /* The sample's coordinates along one axis, of those points that lie within a stretch of it. */
 typedef struct coordinates {
@@ -223,4 +224,18 @@ void plm_voxel_gathering(const float (*xyz)[3], size_t count, double pitch, doub
         const double squares = fmax(squared_length(sum) - n, 0);
         gathering[k] = count > 1 ? fmin(sqrt(squares / (n * (n - 1))), 1) : 0;
     }
+}
+
+plm_status plm_voxels_measure(const float (*xyz)[3], size_t count, plm_sampling *sampling, plm_error *error)
+{
+    sampling->pitch = sampling->gathering = 0;
+    if (!sampling->fused) return PLM_OK;
+    const plm_status status = plm_voxel_pitch_find(xyz, count, sampling->spacing, &sampling->pitch, error);
+    /* A scan without noise that was thinned to voxel means ends where it ends, however many points a voxel had. */
+    if (sampling->noise < least_noise * sampling->pitch) sampling->pitch = 0;
+    if (status != PLM_OK || !(sampling->pitch > 0)) return status;
+    double along[3];
+    plm_voxel_gathering(xyz, count, sampling->pitch, along);
+    sampling->gathering = (along[0] + along[1] + along[2] - fmin(along[0], fmin(along[1], along[2]))) / 2;
+    return PLM_OK;
 }

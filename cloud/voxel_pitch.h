@@ -8,6 +8,7 @@
 #define PLANTIMETER_CLOUD_VOXEL_PITCH_H
 
 #include "cloud/cloud.h"
+#include "cloud/sampling.h"
 
 /** Edge of the cubes whose means the points are, in their unit, so exact that it drifts by less than a twentieth of a voxel over
  * the points' extent; 0 where the coordinates show no grid along all three axes: no voxel means, one pixel a voxel, a cloud that
@@ -18,5 +19,9 @@ plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spac
 /** How strongly the points gather about a grid of this pitch along each axis: |mean of exp(2 pi i x / pitch)| less what chance
  * adds to its square, 0 (not at all, or fewer than two points) to 1. */
 void plm_voxel_gathering(const float (*xyz)[3], size_t count, double pitch, double gathering[3]);
+
+/** Pitch and gathering of points whose sampling is known so far without them: both stay 0 where it is not fused, where no grid
+ * shows, and where the noise is so small beside the voxels that points only were thinned to their means. PLM_E_MEMORY. */
+plm_status plm_voxels_measure(const float (*xyz)[3], size_t count, plm_sampling *sampling, plm_error *error);
 
 #endif

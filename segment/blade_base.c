@@ -202,7 +202,8 @@ static size_t flatten_near(const leaf_points *leaf, const plm_scale *scale, cons
 static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, const frame *f, double expected,
                               double *junction, plm_error *error)
 {
-    plm_base_view view = {.scale = scale->radius, .radius = f->radius, .noise = scale->noise};
+    plm_base_view view = {
+        .scale = scale->radius, .radius = f->radius, .noise = scale->noise, .gathering = scale->gathering};
     view.place = plm_alloc(leaf->count, sizeof *view.place, error);
     if (!view.place) return PLM_E_MEMORY;
     view.count = flatten_near(leaf, scale, f, view.place);

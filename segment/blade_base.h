@@ -21,6 +21,7 @@ typedef struct plm_base_view {
     double scale;  /**< R */
     double radius; /**< of the petiole */
     double noise;
+    double gathering; /**< of voxel means (cloud/sampling.h), else 0 */
 } plm_base_view;
 
 /** Place along the petiole at which the blade begins, the mean over what is likely (see base_outline.c); expected: where it is

@@ -8,6 +8,7 @@ typedef struct plm_scale {
     double size;        /**< diagonal of the box of the 0.5 to 99.5 % quantiles */
     double spacing;     /**< median distance of nearest neighbours, thinned */
     double noise;       /**< sigma across surfaces */
+    double gathering;   /**< of voxel means (cloud/sampling.h), where a stage asked for it; else 0 */
     double radius;      /**< R */
     double stem_radius; /**< 75 % quantile of the radii of tube-like points */
     double tube_length; /**< of all tube-like points together, at R */

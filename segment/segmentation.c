@@ -2,6 +2,7 @@
  * all points. */
 #include "segment/segment.h"
 
+#include "cloud/voxel_pitch.h"
 #include "segment/blade_base.h"
 #include "segment/head.h"
 #include "segment/petiole_foot.h"
@@ -140,6 +141,29 @@ static plm_status is_rosette(const plm_sketch *sketch, bool *answer, plm_error *
     return PLM_OK;
 }
 
+/* How strongly the points gather in voxels; 0 where they are no voxel means. */
+static plm_status find_gathering(const float (*xyz)[3], size_t count, double *gathering, plm_error *error)
+{
+    plm_index *index = NULL;
+    plm_sampling sampling = {0};
+    plm_status status = plm_index_build(xyz, count, &index, error);
+    if (status == PLM_OK) status = plm_sampling_measure(index, xyz, count, NULL, &sampling, error);
+    if (status == PLM_OK) status = plm_voxels_measure(xyz, count, &sampling, error);
+    *gathering = sampling.gathering;
+    plm_index_free(index);
+    return status;
+}
+
+/* Petioles of simple leaves, told at all points. */
+static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, plm_sketch *sketch,
+                                  plm_segmentation *out, plm_error *error)
+{
+    plm_status status = plm_petiole_feet(xyz, row, count, sketch, out, error);
+    if (status == PLM_OK) status = find_gathering(xyz, count, &sketch->scale.gathering, error);
+    if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    return status;
+}
+
 plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
                        const plm_segment_options *options, plm_segmentation *result, plm_error *error)
 {
@@ -178,10 +202,8 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     const bool heads = may_be_head(options->habit, &sketch);
     if (heads) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && heads) status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
-    if (status == PLM_OK && sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes) {
-        status = plm_petiole_feet((const float(*)[3])xyz, row, count, &sketch, &out, error);
-        if (status == PLM_OK) status = plm_blade_bases((const float(*)[3])xyz, row, count, &sketch.scale, &out, error);
-    }
+    if (status == PLM_OK && sketch.habit == PLM_HABIT_SIMPLE && sketch.scale.has_tubes)
+        status = refine_petioles((const float(*)[3])xyz, row, count, &sketch, &out, error);
     if (status != PLM_OK) goto done;
     count_organs(&out);
     out.leaf_flags = plm_alloc_zero(out.leaf_count + 1, sizeof *out.leaf_flags, error);

@@ -92,26 +92,11 @@ static plm_status index_points(const float (*xyz)[3], size_t count, const bool *
     return PLM_OK;
 }
 
-static const double least_noise = 0.12; /* of the pitch: depth cameras have 0.2 and more */
-
-static plm_status find_voxels(const float (*xyz)[3], size_t count, plm_sampling *sampling, plm_error *error)
-{
-    const plm_status status = plm_voxel_pitch_find(xyz, count, sampling->spacing, &sampling->pitch, error);
-    /* A scan without noise that was thinned to voxel means ends where it ends, however many points a voxel had. */
-    if (sampling->noise < least_noise * sampling->pitch) sampling->pitch = 0;
-    if (status != PLM_OK || !(sampling->pitch > 0)) return status;
-    double along[3];
-    plm_voxel_gathering(xyz, count, sampling->pitch, along);
-    sampling->gathering = (along[0] + along[1] + along[2] - fmin(along[0], fmin(along[1], along[2]))) / 2;
-    return PLM_OK;
-}
-
 plm_status plm_scene_index(plm_scene *scene, plm_error *error)
 {
     const float(*xyz)[3] = (const float(*)[3])scene->plant;
     plm_status status = index_points(xyz, scene->plant_count, NULL, &scene->plant_index, &scene->sampling, error);
-    if (status == PLM_OK && scene->sampling.fused)
-        status = find_voxels(xyz, scene->plant_count, &scene->sampling, error);
+    if (status == PLM_OK) status = plm_voxels_measure(xyz, scene->plant_count, &scene->sampling, error);
     return status;
 }
 
