@@ -5,6 +5,7 @@
 
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
+#include "segment/strap_border.h"
 #include "segment/strap_feet.h"
 #include "segment/strap_stem.h"
 #include "segment/strap_trunk.h"
@@ -125,14 +126,14 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     if (status == PLM_OK)
         status = plm_merge_tree(&sketch->graph, distance, REACH * sketch->scale.size,
                                 (size_t)(LEAST_SHARE * (double)count), sketch->leaf, leaves, error);
-    double *foot = NULL;
+    double *foot = NULL, shape = INFINITY;
     if (status == PLM_OK && !(foot = plm_alloc(*leaves + PLM_STRAP_FEET_MOST, sizeof *foot, error)))
         status = PLM_E_MEMORY;
     if (status == PLM_OK) {
         for (size_t k = 0; k < *leaves; k++) foot[k] = INFINITY;
         for (size_t i = 0; i < count; i++)
             if (sketch->leaf[i] >= 0) sketch->is_stem[i] = false;
-        status = plm_strap_stem(sketch, *leaves, error);
+        status = plm_strap_stem(sketch, *leaves, &shape, error);
     }
     if (status == PLM_OK) {
         for (size_t i = 0; i < count; i++) {
@@ -145,6 +146,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     if (status == PLM_OK) status = plm_strap_feet(sketch, distance, outwards, foot, leaves, &apart, error);
     if (status == PLM_OK && apart)
         status = mark_stem(sketch, distance, outwards, source, allowed, nearest, origin, error);
+    if (status == PLM_OK) status = plm_strap_border(sketch, shape, error);
     if (status == PLM_OK)
         *along = foot;
     else

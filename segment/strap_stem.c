@@ -272,8 +272,9 @@ static void measure_offsets(tube *t, float *offset)
 }
 
 /* Up to which offset points are the stem's. What scatters about the tube is its own, all of it, as far as it is the tube's
- * shape; noise spreads stem and feet alike, and beyond some of it there are more points of feet than of the stem. */
-static double surface_limit(const tube *t, const float *offset)
+ * shape; noise spreads stem and feet alike, and beyond some of it there are more points of feet than of the stem. shape: the
+ * share that the shape has in the scatter is the share of its margin that is sure; feet are in the scatter of either. */
+static double surface_limit(const tube *t, const float *offset, double *shape)
 {
     const size_t count = t->sketch->working.count, nodes = t->path.count;
     size_t near = 0;
@@ -282,7 +283,9 @@ static double surface_limit(const tube *t, const float *offset)
     const double scatter = 1.4826 * plm_quantile(t->value, near, 0.5);
     for (size_t n = 0; n < nodes; n++) t->value[n] = (float)t->path.radius[n];
     const double noise = fmin(t->sketch->scale.noise / plm_quantile(t->value, nodes, 0.5), scatter);
-    return MARGIN + hypot(SCATTERS * sqrt(scatter * scatter - noise * noise), NOISE_SCATTERS * noise);
+    const double own = sqrt(scatter * scatter - noise * noise);
+    *shape = scatter > 0 ? 1 + (MARGIN - 1 + SCATTERS * own) * own / scatter : MARGIN;
+    return MARGIN + hypot(SCATTERS * own, NOISE_SCATTERS * noise);
 }
 
 static void mark(plm_sketch *sketch, const float *offset, double limit, size_t leaves, size_t *total, size_t *taken)
@@ -337,9 +340,10 @@ static void find_tube(const plm_sketch *sketch, tube *t, size_t fork, size_t mos
     plm_stem_measure_along(&t->path);
 }
 
-plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
+plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, double *shape, plm_error *error)
 {
     const size_t count = sketch->working.count, fork = trunk_nodes(sketch), most = fork + MOST_BEYOND;
+    *shape = INFINITY;
     if (fork <= LEAST_NODES) return PLM_OK;
     plm_scratch scratch = {.error = error};
     tube t = {.sketch = sketch,
@@ -356,7 +360,7 @@ plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, plm_error *error)
     if (status == PLM_OK) {
         find_tube(sketch, &t, fork, most);
         measure_offsets(&t, offset);
-        mark(sketch, offset, surface_limit(&t, offset), leaves, total, taken);
+        mark(sketch, offset, surface_limit(&t, offset, shape), leaves, total, taken);
         const plm_stem_path rough = sketch->stem;
         sketch->stem = t.path;
         t.path = rough;

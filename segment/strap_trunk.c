@@ -3,7 +3,7 @@
  * passes nearest to it. */
 #include "segment/strap_trunk.h"
 
-#include "cloud/linear.h"
+#include "segment/local_plane.h"
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
 
@@ -78,20 +78,10 @@ static int find_candidates(work *w, uint32_t centre, candidate *list)
 /* How ill a leaf's plane and nearness fit a point. */
 static double misfit(const plm_sketch *s, const candidate *c, uint32_t centre)
 {
-    double sum[3] = {0}, moment[6] = {0}, value[3], vector[3][3], far = 0, d[3];
-    for (int k = 0; k < c->count; k++) {
-        for (int a = 0; a < 3; a++) sum[a] += s->working.xyz[c->point[k]][a];
-        far += sqrt((double)c->squared[k]);
-    }
-    for (int k = 0; k < c->count; k++) {
-        for (int a = 0; a < 3; a++) d[a] = s->working.xyz[c->point[k]][a] - sum[a] / c->count;
-        for (int a = 0, m = 0; a < 3; a++)
-            for (int b = a; b < 3; b++) moment[m++] += d[a] * d[b] / c->count;
-    }
-    plm_eigen3(moment, value, vector);
-    for (int a = 0; a < 3; a++) d[a] = s->working.xyz[centre][a] - sum[a] / c->count;
-    const double off = plm_dot(d, vector[2]);
-    return fabs(off) + NEARNESS * far / c->count;
+    const float(*xyz)[3] = (const float(*)[3])s->working.xyz;
+    double far = 0;
+    for (int k = 0; k < c->count; k++) far += sqrt((double)c->squared[k]);
+    return plm_local_plane_distance(xyz, c->point, (size_t)c->count, xyz[centre]) + NEARNESS * far / c->count;
 }
 
 static int32_t choose(const plm_sketch *s, const candidate *list, int count, uint32_t centre)

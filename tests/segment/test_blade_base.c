@@ -1,7 +1,10 @@
 /* The border between petiole and blade by the outline of the blade's base: flattened leaves of known shape. */
 #include "support/test.h"
 
+#include "cloud/linear.h"
+#include "cloud/neighbours.h"
 #include "cloud/random.h"
+#include "cloud/sampling.h"
 #include "cloud/voxel_pitch.h"
 #include "segment/blade_base.h"
 
@@ -92,19 +95,22 @@ static void in_noise_the_outline_tells_it(void **state)
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) assert_true(largest_error(&shapes[k], 4, 0.0005) < 0.8);
 }
 
-/* Means of the points in each voxel of a grid that lies askew; gives their number, and how strongly they gather in it. */
-static size_t fuse(double (*place)[3], size_t count, double pitch, double *gathering)
+/* Means of the points in each voxel of a grid that lies askew to the leaf, which is turned and tilted for it and back; gives their
+ * number, and what their sampling is found to be. */
+static size_t fuse(double (*place)[3], size_t count, double pitch, plm_sampling *sampling)
 {
     static double sum[VOXELS * VOXELS * VOXELS][3];
     static int pixels[VOXELS * VOXELS * VOXELS];
     static float mean[MOST][3];
-    const double c = cos(0.5), s = sin(0.5);
+    const double c = cos(0.5), s = sin(0.5), ct = cos(0.29), st = sin(0.29);
+    const double axis[3][3] = {{ct * c, -ct * s, st}, {s, c, 0}, {-st * c, st * s, ct}};
     memset(sum, 0, sizeof sum);
     memset(pixels, 0, sizeof pixels);
     for (size_t i = 0; i < count; i++) {
-        const double turned[3] = {c * place[i][0] - s * place[i][1], s * place[i][0] + c * place[i][1], place[i][2]};
+        double turned[3];
         size_t voxel = 0;
         for (int a = 0; a < 3; a++) {
+            turned[a] = plm_dot(axis[a], place[i]) + 0.3 * a * pitch;
             const double index = floor(turned[a] / pitch) + VOXELS / 2;
             assert_true(index >= 0 && index < VOXELS);
             voxel = voxel * VOXELS + (size_t)index;
@@ -116,40 +122,56 @@ static size_t fuse(double (*place)[3], size_t count, double pitch, double *gathe
     for (size_t v = 0; v < VOXELS * VOXELS * VOXELS; v++) {
         if (!pixels[v]) continue;
         for (int a = 0; a < 3; a++) mean[kept][a] = (float)(sum[v][a] /= pixels[v]);
-        place[kept][0] = c * sum[v][0] + s * sum[v][1], place[kept][1] = c * sum[v][1] - s * sum[v][0];
-        place[kept++][2] = sum[v][2];
+        for (int a = 0; a < 3; a++) {
+            place[kept][a] = 0;
+            for (int b = 0; b < 3; b++) place[kept][a] += axis[b][a] * (sum[v][b] - 0.3 * b * pitch);
+        }
+        kept++;
     }
-    double along[3];
-    plm_voxel_gathering((const float(*)[3])mean, kept, pitch, along);
-    *gathering = (along[0] + along[1] + along[2]) / 3;
+    plm_error error = {0};
+    plm_index *index = NULL;
+    assert_ok(plm_index_build((const float(*)[3])mean, kept, &index, &error));
+    assert_ok(plm_sampling_measure(index, (const float(*)[3])mean, kept, NULL, sampling, &error));
+    assert_ok(plm_voxels_measure((const float(*)[3])mean, kept, sampling, &error));
+    plm_index_free(index);
     return kept;
 }
 
-/* Mean error over leaves with lobes, in millimetres, of points that are means of some ten pixels; told is whether the search
- * knows that they are. */
-static double mean_fused_error(const base_shape *shape, bool told)
+/* Root of the mean squared error over leaves of a shape, in millimetres, of points that are means of some ten pixels; told is
+ * whether the search knows that they are. */
+static double fused_error(const base_shape *shape, bool told)
 {
     static double place[MOST][3];
     enum { LEAVES = 8 };
-    double mean = 0;
+    double mean = 0, squares = 0;
     for (int k = 0; k < LEAVES; k++) {
         const double built = 0.1 * k * R;
         plm_error error = {0};
-        double found, gathering;
+        double found;
+        plm_sampling sampling;
         size_t count = make_leaf(shape, built, 40, 0.0005, (uint64_t)(k + 20), place);
-        count = fuse(place, count, 0.0009, &gathering);
+        count = fuse(place, count, 0.0009, &sampling);
+        assert_float_equal(sampling.pitch, 0.0009, 1e-5);
         const plm_base_view view = {.count = count,
                                     .place = place,
                                     .scale = R,
                                     .radius = TUBE,
-                                    .noise = 0.0005,
-                                    .gathering = told ? gathering : 0};
+                                    .noise = sampling.noise,
+                                    .gathering = told ? sampling.gathering : 0};
         assert_ok(plm_base_find(&view, 0, &found, &error));
         assert_true(isfinite(found));
         mean += 1e3 * (found - built) / LEAVES;
+        squares += 1e6 * (found - built) * (found - built) / LEAVES;
     }
-    print_message("%s, fused, %s: %+.2f mm\n", shape->name, told ? "told" : "not told", mean);
-    return mean;
+    print_message("%s, fused, %s: %+.2f mm, RMS %.2f\n", shape->name, told ? "told" : "not told", mean, sqrt(squares));
+    return sqrt(squares);
+}
+
+/* Bases without a sinus have no edges that fill it; their junction comes out 0.6 to 1.1 mm late. */
+static void voxel_means_move_other_bases_little(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < 3; k++) assert_true(fused_error(&shapes[k], true) < 1.3);
 }
 
 /* A voxel has one point, however many pixels: the blurred edges of a sinus and of the petiole look full, and a model whose
@@ -160,9 +182,9 @@ static void in_voxel_means_a_sinus_ends_where_it_ends(void **state)
     const base_shape sinus[] = {{.name = "deep lobes", .slope = 0.45, .bend = 0.2},
                                 {.name = "narrow lobes", .slope = 0.65, .bend = 0.05}};
     for (size_t k = 0; k < 2; k++) {
-        const double told = mean_fused_error(&sinus[k], true), not_told = mean_fused_error(&sinus[k], false);
-        assert_true(fabs(told) < 1.2);
-        assert_true(fabs(told) < 0.5 * fabs(not_told));
+        const double told = fused_error(&sinus[k], true), not_told = fused_error(&sinus[k], false);
+        assert_true(told < 1.2);
+        assert_true(told < 0.6 * not_told);
     }
 }
 
@@ -189,6 +211,7 @@ int main(void)
         cmocka_unit_test(without_noise_the_border_is_told_to_a_tenth_of_R),
         cmocka_unit_test(in_noise_the_outline_tells_it),
         cmocka_unit_test(in_voxel_means_a_sinus_ends_where_it_ends),
+        cmocka_unit_test(voxel_means_move_other_bases_little),
         cmocka_unit_test(too_little_tells_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
