@@ -20,6 +20,9 @@ static const double TUBE_LEAVES = 0.5; /* more of what is off the stem is tube: 
 /* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
  * but not both: those with 0.35 on it have 0.66 tube at most. */
 static const double BARE_TUBES = 0.76, BARE_STEM = 0.35;
+/* Where less than this is on the stem (straps have 0.41 at most), most of the rest must be slimmer than so many of its radii: the
+ * median is 0.43 at most of bare stems with so little on the stem (0.57 of one with 0.57 on it), 0.68 at least of 8 straps that noise makes round. */
+static const double BARE_ALONE = 0.5, BRANCH_RADIUS = 0.6;
 /* Noise thickens blades, and a foot may be a little slimmer than the stem: neither says enough then, and both together do, where
  * feet count from this many radii on (0.98 of a maize that neither told, 0.67 at most over 190 plants with petioles). */
 static const double STRAP_SLIM = 0.7, STRAP_WITH_TUBES = 0.73;
@@ -67,14 +70,24 @@ static double tube_leaves(const plm_sketch *sketch)
     return (double)(tubes - stem) / (double)(sketch->working.count - stem);
 }
 
+/* Most of what is off the stem is as thick as branches of it are, if tubes. */
+static bool has_slim_branches(const plm_sketch *sketch, size_t off)
+{
+    size_t slim = 0;
+    for (size_t i = 0; i < sketch->working.count; i++)
+        slim += !sketch->is_stem[i] && sketch->point[i].radius < BRANCH_RADIUS * sketch->scale.stem_radius;
+    return 2 * slim >= off;
+}
+
 /* Nearly all is tube, and much of it on one stem: branches without leaves, among which noise makes specks of blade. Straps that
- * pass for tubes have far less on their stem. */
+ * pass for tubes have far less on their stem, or are as broad as it in noise that makes them round. */
 static bool is_bare(const plm_sketch *sketch)
 {
     size_t tubes, stem;
     count_tubes(sketch, &tubes, &stem);
     const double all = (double)sketch->working.count;
-    return (double)tubes >= BARE_TUBES * all && (double)stem >= BARE_STEM * all;
+    if ((double)tubes < BARE_TUBES * all || (double)stem < BARE_STEM * all) return false;
+    return (double)stem >= BARE_ALONE * all || has_slim_branches(sketch, sketch->working.count - stem);
 }
 
 static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *groups)
