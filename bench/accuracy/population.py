@@ -61,6 +61,11 @@ def read_index(folder):
     return index["cases"] if isinstance(index, dict) else index
 
 
+def read_truth(folder, case):
+    with open(os.path.join(folder, case["truth"])) as file:
+        return json.load(file)
+
+
 def measure(program, files, run, extra):
     if os.path.isdir(run):
         shutil.rmtree(run)
@@ -85,8 +90,7 @@ def score_folder(folder, out, program):
                 [] if source == "own" else ["--labels", "label"])
         rows = score.read_traits(run)
         for case in cases:
-            with open(os.path.join(folder, case["truth"])) as file:
-                truth = json.load(file)
+            truth = read_truth(folder, case)
             plant = case["plant_id"] + ("" if source == "own" else ".labelled")
             pairs = score.score_labels(case, run, folder)["pairs"] if source == "own" else identity(truth)
             scores, misses = defaultdict(list), defaultdict(int)
