@@ -29,12 +29,12 @@ except ImportError as problem:  # a machine without numpy skips the test
 
 OTHER, STEM, PETIOLE, LEAF = 0, 1, 2, 3
 UNMATCHED = 1000  # numbers of found leaves that match no true one begin here
-PLY_NAMES = {"f4": "float", "f8": "double", "u1": "uchar", "i2": "short", "u2": "ushort", "i4": "int"}
+PLY_NAMES = {np.dtype(kind): name for name, kind in score.PLY_TYPES.items()}
 
 
 def write_ply(path, cloud):
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(cloud)}"]
-    header += [f"property {PLY_NAMES[cloud.dtype[name].str[1:]]} {name}" for name in cloud.dtype.names]
+    header += [f"property {PLY_NAMES[cloud.dtype[name]]} {name}" for name in cloud.dtype.names]
     with open(path, "wb") as file:
         file.write(("\n".join(header) + "\nend_header\n").encode())
         file.write(cloud.tobytes())
@@ -85,9 +85,11 @@ def errors(cases, run, options):
     rows, area, inclination = score.read_traits(run), [], []
     for case in cases:
         for organ in read_truth(options.folder, case)["organs"]:
-            key = organ["organ"], str(organ["organ_id"])
+            if organ["organ"] != "leaf":
+                continue
+            key = "leaf", str(organ["organ_id"])
             row = [rows[case["plant_id"]].get((*key, trait)) for trait in ("leaf_area", "leaf_inclination")]
-            if organ["organ"] != "leaf" or not all(r and r["value"] for r in row):
+            if not all(r and r["value"] for r in row):
                 continue
             area.append(float(row[0]["value"]) * score.FACTOR[row[0]["unit"]] / organ["leaf_area"] - 1)
             inclination.append(float(row[1]["value"]) * score.FACTOR[row[1]["unit"]] - organ["leaf_inclination"])
@@ -108,7 +110,7 @@ def main():
              if not options.kinds or read_truth(options.folder, case)["kind"] in options.kinds.split(",")]
     for name, files in write_mixtures(cases, options).items():
         run = os.path.join(options.out, name, "run")
-        measure(options.program, files, run, ["--labels", "label", "-t", "leaf_area,leaf_inclination", "--force"])
+        measure(options.program, files, run, ["--labels", "label", "-t", "leaf_area,leaf_inclination"])
         area, inclination = errors(cases, run, options)
         if not len(area):
             sys.exit(f"{name}: no leaf was measured")
