@@ -7,6 +7,7 @@
 
 #include "cloud/linear.h"
 #include "segment/line_fit.h"
+#include "segment/rachis_line.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -21,14 +22,17 @@ static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this lengt
 /* Share of the leaf's points that its last leaflet holds at least where balls find no tube before it, and the share where
  * the narrow stretch before it is shorter than so many windows. */
 static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
-static const double BLADE = 3;         /* widths of the tube that the last leaflet reaches at least */
-static const double NEAR = 3.2;        /* points within so many widths of a tube station's middle are of the tube */
-static const double FOOT_LINE = 2;     /* length of the petiole that gives its line at the foot, in R */
-static const double FOOT = 0.35;       /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1;     /* of a step, in the search for the change */
-static const double NARROW = 0.07;     /* quantile of the widths of a rosette's leaf that is its tube's */
-static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
+static const double LEAST_CLEAR = 0.15; /* the same where nothing but a tube lies about the line */
+static const double BLADE = 2;          /* widths of the tube that the last leaflet reaches at least */
+static const double NEAR = 3.2;         /* points within so many widths of a tube station's middle are of the tube */
+static const double NEAR_CLEAR = 1.9;   /* the same where leaflets may lie beside it */
+static const double FOOT_LINE = 2;      /* length of the petiole that gives its line at the foot, in R */
+static const double FOOT = 0.35;        /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1;      /* of a step, in the search for the change */
+static const double NARROW = 0.07;      /* quantile of the widths of a rosette's leaf that is its tube's */
+static const double LEAST_BLADE = 0.2;  /* share of a simple leaf's points beyond its junction: less is none */
 enum {
+    CLEAR = 2, /* stations at which nothing but a tube lies about the line: a rachis */
     BEFORE = 6,
     AFTER = 9,
     FEWEST_STATIONS = 6,
@@ -47,6 +51,9 @@ typedef struct work {
     uint32_t *source, *parent, *mark;
     float *start, *value;
     uint32_t *trail; /* from the leaf's farthest point to the foot */
+    size_t trail_count;
+    bool *clear,
+        *beside; /* of each station: about its line lies nothing but the rachis; leaflets are joined beside it */
     uint32_t stamp;
 } work;
 
@@ -145,15 +152,15 @@ static void measure_stations(work *w)
 {
     plm_leaf_way *way = &w->way;
     const double margin = (w->sketch->habit == PLM_HABIT_COMPOUND ? JOINED_COMPOUND : JOINED) * way->window;
-    size_t trail_count = 0, begin = 0, end = 0;
-    uint32_t *trail = w->trail;
-    for (uint32_t i = way->order[way->count - 1]; i != UINT32_MAX; i = w->parent[i]) trail[trail_count++] = i;
+    size_t begin = 0, end = 0;
+    w->trail_count = 0;
+    for (uint32_t i = way->order[way->count - 1]; i != UINT32_MAX; i = w->parent[i]) w->trail[w->trail_count++] = i;
     for (size_t k = 0; k < way->station_count; k++) {
         const double low = (double)k * way->step - 0.5 * way->window, high = low + way->window;
         while (begin < way->count && way->distance[way->order[begin]] < low) begin++;
         if (end < begin) end = begin;
         while (end < way->count && way->distance[way->order[end]] < high) end++;
-        flood(w, low - margin, high + margin, trail, trail_count);
+        flood(w, low - margin, high + margin, w->trail, w->trail_count);
         measure_marked(w, begin, end, &way->station[k]);
     }
 }
@@ -231,7 +238,10 @@ static bool is_rachis(const work *w, size_t begin, size_t split, double typical)
     const plm_leaf_way *way = &w->way;
     const double run = (double)(split - begin);
     double points = 0, tubes = 0;
-    for (size_t k = begin; k < split; k++) points += way->station[k].count, tubes += way->station[k].tube;
+    size_t clear = 0;
+    for (size_t k = begin; k < split; k++)
+        points += way->station[k].count, tubes += way->station[k].tube, clear += w->clear[k];
+    if (clear >= CLEAR) return share_beyond(way, split) > LEAST_CLEAR;
     if (run < WINDOW || (run < LONG_RUN * WINDOW && points < FULL * typical * run)) return false;
     if (tubes > TUBE_SHARE * run) return true;
     return share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
@@ -244,7 +254,7 @@ static size_t last_split(const work *w, size_t first)
     const plm_leaf_way *way = &w->way;
     const double limit = plm_leaf_wide(way), typical = tube_count(w, first);
     size_t k = way->station_count;
-    while (k > first && way->station[k - 1].width < BLADE * way->tube) k--;
+    while (k > first && (w->clear[k - 1] || way->station[k - 1].width < BLADE * way->tube)) k--;
     while (k > first) {
         if (way->station[k - 1].width > limit) {
             k--;
@@ -377,11 +387,11 @@ static void relabel_compound(work *w)
 {
     plm_sketch *s = w->sketch;
     const plm_leaf_way *way = &w->way;
-    const double reach = NEAR * way->tube;
     const uint32_t tip = way->order[way->count - 1];
     for (size_t k = 0; k < way->count; k++) {
         const uint32_t i = way->order[k];
         const plm_station *station = plm_leaf_station(way, way->distance[i]);
+        const double reach = (w->beside[station - way->station] ? NEAR_CLEAR : NEAR) * way->tube;
         if (way->distance[i] >= way->junction) {
             if (!s->is_tube[i] || gap_squared(s->working.xyz[i], station->middle) > 4 * station->width * station->width)
                 continue;
@@ -419,9 +429,11 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
 static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
-    const plm_status status = measure_leaf(w, leaf, error);
-    if (status != PLM_OK || !way->count) return status;
+    plm_status status = measure_leaf(w, leaf, error);
     const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
+    if (status == PLM_OK && way->count && compound)
+        status = plm_rachis_clear(way, w->trail, w->trail_count, w->clear, w->beside, error);
+    if (status != PLM_OK || !way->count) return status;
     const size_t split = compound ? last_split(w, w->first) : plm_leaf_only_split(way, w->first);
     if (split <= w->first || split >= way->station_count) return PLM_OK;
     way->junction = change(way, w->first, split);
@@ -451,6 +463,8 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.value = plm_scratch_take(&w.scratch, count + STATIONS_MOST, sizeof *w.value);
     w.way.order = plm_scratch_take(&w.scratch, count, sizeof *w.way.order);
     w.way.distance = plm_scratch_take(&w.scratch, count, sizeof *w.way.distance);
+    w.clear = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.clear);
+    w.beside = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.beside);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
     for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)

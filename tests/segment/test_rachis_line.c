@@ -1,0 +1,146 @@
+/* The rachis between leaflets that are joined at its sides, and blades that are none. */
+#include "support/test.h"
+
+#include "cloud/random.h"
+#include "segment/rachis_line.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST = 8000, STATIONS = 100 };
+static const double TUBE = 0.001, NOISE = 0.0003, STEP = 0.001, DENSITY = 2e6; /* points a square metre */
+
+typedef struct leaf {
+    size_t count, trail_count;
+    float xyz[MOST][3];
+    uint32_t order[MOST], trail[STATIONS];
+    float distance[MOST];
+    plm_station station[STATIONS];
+    plm_random random;
+} leaf;
+
+static void add(leaf *l, double x, double y, double z)
+{
+    assert_true(l->count < MOST);
+    const double place[3] = {x, y, z};
+    for (int a = 0; a < 3; a++) l->xyz[l->count][a] = (float)(place[a] + NOISE * plm_draw_normal(&l->random));
+    l->distance[l->count] = fmaxf(l->xyz[l->count][0], 0); /* the foot is at 0 */
+    l->count++;
+}
+
+static void add_tube(leaf *l, double from, double to)
+{
+    const size_t count = (size_t)(DENSITY * (to - from) * 2 * 3.14159 * TUBE);
+    for (size_t i = 0; i < count; i++) {
+        const double angle = 2 * 3.14159 * plm_draw(&l->random);
+        add(l, from + (to - from) * plm_draw(&l->random), TUBE * cos(angle), TUBE * sin(angle));
+    }
+}
+
+static void add_sheet(leaf *l, double x0, double x1, double y0, double y1)
+{
+    const size_t count = (size_t)(DENSITY * (x1 - x0) * (y1 - y0));
+    for (size_t i = 0; i < count; i++)
+        add(l, x0 + (x1 - x0) * plm_draw(&l->random), y0 + (y1 - y0) * plm_draw(&l->random), 0);
+}
+
+static const leaf *sorted;
+
+static int by_distance(const void *a, const void *b)
+{
+    const uint32_t i = *(const uint32_t *)a, k = *(const uint32_t *)b;
+    if (sorted->distance[i] != sorted->distance[k]) return sorted->distance[i] < sorted->distance[k] ? -1 : 1;
+    return i < k ? -1 : 1;
+}
+
+/* Stations take in all that lies at their distance: everything is joined. */
+static void make_way(leaf *l, const plm_sketch *sketch, plm_leaf_way *way)
+{
+    for (size_t i = 0; i < l->count; i++) l->order[i] = (uint32_t)i;
+    sorted = l;
+    qsort(l->order, l->count, sizeof *l->order, by_distance);
+    *way = (plm_leaf_way){.sketch = sketch,
+                          .count = l->count,
+                          .order = l->order,
+                          .distance = l->distance,
+                          .station_count = (size_t)((double)l->distance[l->order[l->count - 1]] / STEP) + 1,
+                          .station = l->station,
+                          .step = STEP,
+                          .window = 3 * STEP,
+                          .tube = 0.9 * TUBE};
+    assert_true(way->station_count <= STATIONS);
+    l->trail_count = 0;
+    for (size_t k = 0; k < way->station_count; k++) {
+        const double low = ((double)k - 1.5) * STEP, high = ((double)k + 1.5) * STEP;
+        size_t begin = 0, end, middle = MOST;
+        while (begin < l->count && l->distance[l->order[begin]] < low) begin++;
+        for (end = begin; end < l->count && l->distance[l->order[end]] < high; end++) {
+            const uint32_t i = l->order[end];
+            if (middle == MOST || fabsf(l->xyz[i][1]) < fabsf(l->xyz[middle][1])) middle = i;
+        }
+        plm_station_measure(sketch, l->order + begin, end - begin, &l->station[k]);
+        if (middle < MOST) l->trail[l->trail_count++] = (uint32_t)middle;
+    }
+}
+
+static void find_clear(leaf *l, bool *clear, bool *beside, plm_leaf_way *way)
+{
+    bool *is_tube = calloc(MOST, sizeof *is_tube);
+    assert_non_null(is_tube);
+    const plm_sketch sketch = {.working = {.count = l->count, .xyz = l->xyz, .cell = STEP}, .is_tube = is_tube};
+    plm_error error = {0};
+    make_way(l, &sketch, way);
+    assert_ok(plm_rachis_clear(way, l->trail, l->trail_count, clear, beside, &error));
+    free(is_tube);
+}
+
+/* Leaflets 2.5 mm beside the rachis, from 20 to 40 mm, joined with it by their distance; the last one begins at 60 mm. */
+static void rachis_between_leaflets_is_clear_of_them(void **state)
+{
+    (void)state;
+    static leaf l;
+    static bool clear[STATIONS], beside[STATIONS];
+    plm_leaf_way way;
+    l = (leaf){.random = {.key = plm_key(1, 0)}};
+    add_tube(&l, 0, 0.060);
+    add_sheet(&l, 0.020, 0.040, 0.0045, 0.015);
+    add_sheet(&l, 0.020, 0.040, -0.015, -0.0045);
+    add_sheet(&l, 0.060, 0.085, -0.012, 0.012);
+    find_clear(&l, clear, beside, &way);
+    for (size_t k = 10; k < 57; k++) assert_true(clear[k]);
+    for (size_t k = 24; k < 37; k++) {
+        assert_true(beside[k]);
+        assert_true(way.station[k].width < 0.0018); /* 6 mm and more with the leaflets */
+    }
+    for (size_t k = 44; k < 56; k++) assert_false(beside[k]);
+    for (size_t k = 64; k < way.station_count; k++) assert_false(clear[k]);
+}
+
+/* A blade that is sparse along its middle is a blade all the same. */
+static void thin_place_amid_a_blade_is_no_rachis(void **state)
+{
+    (void)state;
+    static leaf l;
+    static bool clear[STATIONS], beside[STATIONS];
+    plm_leaf_way way;
+    l = (leaf){.random = {.key = plm_key(2, 0)}};
+    add_tube(&l, 0, 0.030);
+    add_sheet(&l, 0.030, 0.090, -0.0017, 0.0017);
+    add_sheet(&l, 0.030, 0.055, -0.015, -0.0017);
+    add_sheet(&l, 0.030, 0.055, 0.0017, 0.015);
+    add_sheet(&l, 0.055, 0.065, 0.0045, 0.015);
+    add_sheet(&l, 0.055, 0.065, -0.015, -0.0045);
+    add_sheet(&l, 0.065, 0.090, 0.0017, 0.015);
+    add_sheet(&l, 0.065, 0.090, -0.015, -0.0017);
+    find_clear(&l, clear, beside, &way);
+    for (size_t k = 34; k < way.station_count; k++) assert_false(clear[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rachis_between_leaflets_is_clear_of_them),
+        cmocka_unit_test(thin_place_amid_a_blade_is_no_rachis),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
