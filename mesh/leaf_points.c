@@ -2,6 +2,7 @@
  * order of the input's rows, and neighbours lie near each other in memory. */
 #include "mesh/leaf_points.h"
 
+#include "cloud/linear.h"
 #include "cloud/sampling.h"
 #include "cloud/selection.h"
 #include "cloud/spatial_order.h"
@@ -15,16 +16,19 @@
 enum {
     LINK_NEIGHBOURS = 8,
     SMALLEST_PART = 12, /* points */
-    SUPPORT_ROUNDS = 3
+    AROUND = 24,        /* points around one that tell the sheet ... */
+    FEWEST_AROUND = 6,  /* ... of which so many at least */
+    GHOST_ROUNDS = 3
 };
 
 static const double smallest_share = 0.001; /* of the points: smaller parts are stray */
 /* Edges join a part up to 5 median or 1.5 x 90th percentile of the distance to the 8th neighbour: a fixed small radius
  * loses sparse, half-hidden pieces unseen (study on virtual lettuce: up to 19 % of a leaf). */
 static const double link_median = 5.0, link_high = 1.5;
-/* Distance to the 8th neighbour against its median and against that of its neighbours beyond which a voxel mean
- * is no leaf: 1.4 at a straight rim. */
-static const double supported_reach = 1.6, supported_beside = 1.2;
+/* Distance to the 8th neighbour against that of the densest tenth of those around: 1.4 at a straight rim, 2 at a right angle. Ghosts
+ * have more and lie off the sheet besides: the excess times the distance off it, in SD of those around, is what tells them apart,
+ * as a sparse part that goes on in the sheet has the one but not the other. */
+static const double usual_reach = 1.2, unlikely = 1.5, densest = 0.1;
 
 /* Copies the points named by row to xyz in canonical order, each place once; gives how many places there are. */
 static plm_status order_points(const float (*given)[3], const uint32_t *row, size_t count, float (*xyz)[3],
@@ -138,22 +142,52 @@ static plm_status find_neighbours(plm_leaf_points *points, uint32_t *neighbour, 
     return PLM_OK;
 }
 
-/* Voxel means lie evenly on a leaf: points with much fewer neighbours than others are ghosts off its rim, unless all of them
- * there have as few (a part that the cameras saw from the side). Leaves the ghosts out; gives how many there were. */
-static size_t drop_unsupported(plm_leaf_points *points, const uint32_t *neighbour, double median)
+/* Distance of a point from the plane through those of the points around it (not itself) that reach no farther than limit, in SD of
+ * these; 0 where they are too few to tell. */
+static double off_sheet(const plm_leaf_points *points, size_t row, const uint32_t *around, size_t count, double limit)
 {
-    enum { K = LINK_NEIGHBOURS };
+    double mean[3] = {0, 0, 0}, moment[6] = {0}, value[3], axis[3][3], off = 0;
+    uint32_t used[AROUND];
+    size_t n = 0;
+    for (size_t j = 0; j < count; j++)
+        if (around[j] != row && points->reach[around[j]] <= limit) used[n++] = around[j];
+    if (n < FEWEST_AROUND) return 0;
+    for (size_t j = 0; j < n; j++)
+        for (int i = 0; i < 3; i++) mean[i] += (double)points->xyz[used[j]][i] / (double)n;
+    for (size_t j = 0; j < n; j++)
+        for (int a = 0, k = 0; a < 3; a++)
+            for (int b = a; b < 3; b++, k++)
+                moment[k] += ((double)points->xyz[used[j]][a] - mean[a]) * ((double)points->xyz[used[j]][b] - mean[b]);
+    plm_eigen3(moment, value, axis);
+    for (int i = 0; i < 3; i++) off += axis[2][i] * ((double)points->xyz[row][i] - mean[i]);
+    const double squared = fmax(value[2], 0) / (double)(n - 3); /* a plane takes three */
+    if (!(fabs(off) > 0)) return 0;                             /* all of them may lie in one plane exactly */
+    return squared > 0 ? fabs(off) / sqrt(squared) : INFINITY;
+}
+
+/* Whether a voxel mean is a ghost: sparser than those around it, and off their sheet. */
+static bool is_ghost(const plm_leaf_points *points, size_t row)
+{
+    uint32_t around[AROUND];
+    double reach[AROUND];
+    const size_t count = plm_index_nearest(points->index, points->xyz[row], AROUND, around, NULL);
+    for (size_t j = 0; j < count; j++) reach[j] = points->reach[around[j]];
+    const double excess = points->reach[row] / plm_select_quantile(reach, count, densest) - usual_reach;
+    if (!(excess > 0)) return false;
+    return excess * off_sheet(points, row, around, count, plm_select_quantile(reach, count, 0.5)) > unlikely;
+}
+
+/* Voxel means lie evenly on a leaf, and where the cameras see it from the side they grow sparse little by little, in its sheet;
+ * ghosts off its rim scatter along the rays. Leaves the ghosts out; gives how many there were. */
+static size_t drop_ghosts(plm_leaf_points *points, double median)
+{
     size_t kept = 0;
     for (size_t i = 0; i < points->count; i++) {
-        double near[K];
-        bool ghost = points->reach[i] > supported_reach * median;
-        if (ghost) {
-            for (size_t j = 0; j < K; j++) near[j] = points->reach[neighbour[i * K + j]];
-            ghost = points->reach[i] > supported_beside * plm_select_quantile(near, K, 0.5);
-        }
-        if (!ghost) kept++;
+        const bool ghost = points->reach[i] > median && is_ghost(points, i);
+        kept += !ghost;
         points->component[i] = ghost;
     }
+    if (kept < SMALLEST_PART) return 0; /* so few tell nothing about each other */
     const size_t dropped = points->count - kept;
     kept = 0;
     for (size_t i = 0; i < points->count; i++)
@@ -176,12 +210,9 @@ static plm_status find_parts(plm_leaf_points *points, int fused, plm_error *erro
         neighbour && squared && sorted && parent && points->reach && points->component ? PLM_OK : PLM_E_MEMORY;
     if (status == PLM_OK) status = find_neighbours(points, neighbour, squared, sorted, &median, error);
     if (status == PLM_OK && fused >= 0) points->fused = fused > 0;
-    for (int round = 0; round < SUPPORT_ROUNDS && status == PLM_OK && points->fused; round++) {
-        const size_t before = points->count;
-        if (drop_unsupported(points, neighbour, median) == 0) break;
-        if (points->count < SMALLEST_PART)
-            status = plm_fail(error, PLM_E_DEGENERATE, "of the leaf's %zu points too few lie close together", before);
-        if (status == PLM_OK) status = find_neighbours(points, neighbour, squared, sorted, &median, error);
+    for (int round = 0; round < GHOST_ROUNDS && status == PLM_OK && points->fused; round++) {
+        if (drop_ghosts(points, median) == 0) break;
+        status = find_neighbours(points, neighbour, squared, sorted, &median, error);
         points->fused = true;
     }
     if (status == PLM_OK) {

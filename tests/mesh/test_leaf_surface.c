@@ -229,6 +229,31 @@ static void ghosts_off_the_rim_of_voxel_means_add_no_area(void **unused)
     plm_leaf_surface_free(&clean);
 }
 
+/* A leaf that turns away from the cameras has fewer and fewer voxels there, all of them in its sheet: they are leaf, up to a rim that
+ * is known to two spacings of the sparse end, each 5 % of the area. */
+static void voxel_means_that_grow_sparse_in_the_sheet_are_leaf(void **unused)
+{
+    (void)unused;
+    enum { COLUMNS = 60, ROWS = 40 };
+    static float xyz[COLUMNS * ROWS][3];
+    const double step = 1e-3;
+    uint64_t seed = 22;
+    size_t count = 0;
+    for (int i = 0; i < COLUMNS * ROWS; i++) {
+        const double x = i % COLUMNS, share = x < 25 ? 1 : exp(-(x - 25) / 15); /* of the voxels that are seen */
+        if (test_uniform(&seed) > share) continue;
+        xyz[count][0] = (float)(step * (x + 0.2 * test_uniform(&seed)));
+        xyz[count][1] = (float)(step * ((double)(i / COLUMNS) + 0.2 * test_uniform(&seed)));
+        xyz[count++][2] = (float)(0.2 * step * test_normal(&seed));
+    }
+    const plm_surface_options options = {.noise = -1, .fused = 1};
+    plm_leaf_surface surface;
+    plm_error error;
+    assert_ok(plm_leaf_surface_make((const float(*)[3])xyz, count, &options, &surface, &error));
+    assert_near(surface.area, (double)COLUMNS * ROWS * step * step, 0.10 * surface.area);
+    plm_leaf_surface_free(&surface);
+}
+
 /* A depth camera's leaf, fused on voxels: share by which its area is off. */
 static double fused_area_error(const leaf_case *leaf, double cell, double voxel)
 {
@@ -280,6 +305,7 @@ int main(void)
         cmocka_unit_test(a_hole_is_filled_and_flagged),
         cmocka_unit_test(odd_input_gives_a_status_that_says_why),
         cmocka_unit_test(ghosts_off_the_rim_of_voxel_means_add_no_area),
+        cmocka_unit_test(voxel_means_that_grow_sparse_in_the_sheet_are_leaf),
         cmocka_unit_test(how_many_pixels_a_voxel_has_makes_no_leaf_larger),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
