@@ -38,7 +38,7 @@ static const double fused_inset = 0.10, fused_outset = 0.30, fused_outset_densit
  * (cloud/voxel_pitch.h): the more there are, the farther out one of them makes a voxel at the rim. Outset in voxels = inset +
  * slope x gathering, of the half-density area and of the one above; from virtual plants of six kinds with true labels, in images
  * of 960 to 2800 columns. The half-density area has no interior to be read in where the leaf is a few voxels wide. */
-static const double pixel_inset = 0.48, pixel_outset_density = 1.60, pixel_outset = 1.24;
+static const double pixel_inset = 0.48, pixel_outset_density = 1.55, pixel_outset = 1.19;
 /* Rim x voxel / area up to which the density alone counts, and from which it counts no more; from there on the correction fades to
  * where a leaf is so narrow that its few points do not tell how they gather. */
 static const double density_wide = 0.3, density_narrow = 0.6, too_narrow = 1.2;

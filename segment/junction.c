@@ -52,8 +52,7 @@ typedef struct work {
     float *start, *value;
     uint32_t *trail; /* from the leaf's farthest point to the foot */
     size_t trail_count;
-    bool *clear,
-        *beside; /* of each station: about its line lies nothing but the rachis; leaflets are joined beside it */
+    bool *clear, *beside; /* of each station: see plm_rachis_clear */
     uint32_t stamp;
 } work;
 

@@ -10,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double CORE =
-    1.7; /* widths of the tube from the line: two SDs across a tube in noise, its radius without */
+static const double CORE = 1.7; /* widths of the tube from the line: two SDs across it in noise, its radius without */
 /* Points beside the line per point on it: of a tube in noise, of a sheet. */
 static const double BESIDE_TUBE = 0.2, BESIDE_SHEET = 0.9;
 static const double TELLS = 4;      /* a station's evidence (logarithm of odds) is at most this: petiolules, gaps */
