@@ -55,13 +55,10 @@ static void take_means(line *l)
 static void smooth(line *l)
 {
     for (int round = 0; round < 2; round++) {
-        memset(l->sum, 0, l->count * sizeof *l->sum);
         for (size_t k = 0; k < l->count; k++) {
-            for (int a = 0; a < 3; a++) l->sum[k][a] = l->node[k][a];
+            for (int a = 0; a < 3; a++) l->sum[k][a] = FEWEST * l->node[k][a];
             l->sum[k][3] = FEWEST;
         }
-        for (size_t k = 0; k < l->count; k++)
-            for (int a = 0; a < 3; a++) l->sum[k][a] *= l->sum[k][3];
         take_means(l);
     }
 }
