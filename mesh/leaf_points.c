@@ -29,6 +29,8 @@ static const double link_median = 5.0, link_high = 1.5;
  * have more and lie off the sheet besides: the excess times the distance off it, in SD of those around, is what tells them apart,
  * as a sparse part that goes on in the sheet has the one but not the other. */
 static const double usual_reach = 1.2, unlikely = 1.5, densest = 0.1;
+/* Of the reach around: scatter below is none, as that of a grid's rounded coordinates. */
+static const double exact = 0.02;
 
 /* Copies the points named by row to xyz in canonical order, each place once; gives how many places there are. */
 static plm_status order_points(const float (*given)[3], const uint32_t *row, size_t count, float (*xyz)[3],
@@ -143,7 +145,7 @@ static plm_status find_neighbours(plm_leaf_points *points, uint32_t *neighbour, 
 }
 
 /* Distance of a point from the plane through those of the points around it (not itself) that reach no farther than limit, in SD of
- * these; 0 where they are too few to tell. */
+ * these; 0 where they are too few to tell. limit is above 0. */
 static double off_sheet(const plm_leaf_points *points, size_t row, const uint32_t *around, size_t count, double limit)
 {
     double mean[3] = {0, 0, 0}, moment[6] = {0}, value[3], axis[3][3], off = 0;
@@ -161,8 +163,7 @@ static double off_sheet(const plm_leaf_points *points, size_t row, const uint32_
     plm_eigen3(moment, value, axis);
     for (int i = 0; i < 3; i++) off += axis[2][i] * ((double)points->xyz[row][i] - mean[i]);
     const double squared = fmax(value[2], 0) / (double)(n - 3); /* a plane takes three */
-    if (!(fabs(off) > 0)) return 0;                             /* all of them may lie in one plane exactly */
-    return squared > 0 ? fabs(off) / sqrt(squared) : INFINITY;
+    return fabs(off) / fmax(sqrt(squared), exact * limit);
 }
 
 /* Whether a voxel mean is a ghost: sparser than those around it, and off their sheet. */
