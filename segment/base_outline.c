@@ -4,8 +4,9 @@
  * away. The points are taken for a Poisson process whose density is that of the petiole in the strip, of the blade within
  * the outline, and little elsewhere, all blurred by the noise; the junction is the mean over what is likely, all outlines of
  * either side taken together: in noise a narrow lobe that begins late is nearly as likely as a wide one that begins early,
- * and the likeliest alone jumps between them. Where the noise is small beside the petiole, that a tube is thick and a blade
- * is not counts as well (base_thickness.c). */
+ * and the likeliest alone jumps between them. The first guess is good or, where deep lobes lie beside the petiole, far too
+ * early: its errors follow a Cauchy law. Where the noise is small beside the petiole, that a tube is thick and a blade is not
+ * counts as well (base_thickness.c). */
 #include "segment/blade_base.h"
 
 #include "segment/scratch.h"
@@ -263,7 +264,7 @@ static double judge(const outline *o, const evidence *e, int junction)
 {
     const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_SD * -o->foot);
     const double sides = side_evidence(o, 0, junction) + side_evidence(o, 1, junction);
-    return sides + THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - 0.5 * off * off;
+    return sides + THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - log1p(off * off);
 }
 
 /* Mean of the junction: every COARSE-th row, then those between likely ones. */
