@@ -33,7 +33,10 @@ static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
 static const double ROUND[] = {0.15, 0.3, 0.6, 1.2, 2.4};
 static const double SLOPE[] = {0.3, 0.4, 0.5, 0.65, 0.85, 1.1, 1.5, 2.2, 3.5};
 static const double BEND[] = {0, 0.12, 0.25, 0.5, 0.9};
+/* Where the blade's width is told: from so far before the first guess on, in windows of two such bins. */
+static const double WIDTH_FROM = -1, WIDTH_BIN = 0.25;
 enum {
+    WIDTH_BINS = 15,
     WEDGES = sizeof WEDGE / sizeof *WEDGE,
     ROUNDS = sizeof ROUND / sizeof *ROUND,
     BENDS = sizeof BEND / sizeof *BEND,
@@ -70,6 +73,25 @@ typedef struct outline {
     double before[IMAGE_ROWS], within[COLUMNS]; /* shares of the petiole that lie at a row, at a column */
     image *image;                               /* of each outline */
 } outline;
+
+/* By windows along: points of a strip lie half of its half width off the middle, on the mean. */
+bool plm_base_is_wide(const plm_base_view *view)
+{
+    double sum[WIDTH_BINS + 1] = {0};
+    size_t count[WIDTH_BINS + 1] = {0};
+    const double reach = COLUMNS * COLUMN * view->scale;
+    for (size_t i = 0; i < view->count; i++) {
+        const double place = floor((view->place[i][0] / view->scale - WIDTH_FROM) / WIDTH_BIN);
+        if (!(place >= 0 && place <= WIDTH_BINS)) continue;
+        sum[(int)place] += fabs(view->place[i][1]);
+        count[(int)place]++;
+    }
+    for (int k = 0; k < WIDTH_BINS; k++) {
+        const size_t points = count[k] + count[k + 1];
+        if (points >= FEWEST && 2 * (sum[k] + sum[k + 1]) >= reach * (double)points) return true;
+    }
+    return false;
+}
 
 static double below(double x)
 {

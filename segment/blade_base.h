@@ -7,7 +7,8 @@
 
 /** Moves the border between petiole and leaf, in the labels of the plant's points, to where the outline of the blade says
  * that it begins. xyz: count points; row[i]: where point i is in out. Leaves without petiole, and those whose points tell no
- * border, stay as they are. PLM_E_MEMORY. */
+ * border, stay as they are; of a rosette also those whose blades are too small for an outline, and all where the noise hides
+ * the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                            plm_segmentation *out, plm_error *error);
 
@@ -27,6 +28,10 @@ typedef struct plm_base_view {
 /** Place along the petiole at which the blade begins, the mean over what is likely (see base_outline.c); expected: where it is
  * thought to be beforehand. NAN where petiole or blade have too few points. PLM_E_MEMORY. */
 plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error);
+
+/** Whether the blade reaches to the sides of all that is compared with outlines. A smaller one ends within it, and an outline,
+ * which knows no tip, would put its base where it ends. */
+bool plm_base_is_wide(const plm_base_view *view);
 
 /** A point in the petiole's strip. */
 typedef struct plm_base_height {
