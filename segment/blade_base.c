@@ -24,13 +24,15 @@ static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines be
 /* A rosette's thick tubes are its petioles: where the noise is more than half of their radius, their width is not known, and
  * outlines put the border farther off than the widths of level sets do (3 of 16 virtual splats, with 0.57 to 0.68 of it). */
 static const double CLEAR_NOISE = 0.5;
+/* In R: a rosette's blades have no lobes beside the petiole that put the first guess farther off. Farther moves go to the tip. */
+static const double MOST_MOVE = 1;
 enum { FEWEST_PETIOLE = 15, FEWEST_BLADE = 30, FEWEST_PIECE = 9, FEWEST_PLANE = 15, MOST_POINTS = 8000, ROUNDS = 2 };
 
 typedef struct leaf_points {
     const float (*xyz)[3];
     const uint32_t *point; /* the leaf's points, ... */
     size_t count, petiole; /* ... those of its petiole first */
-    bool may_be_small;     /* a rosette's: small blades stay as they are */
+    bool is_rosettes;      /* small blades stay as they are */
 } leaf_points;
 
 /* The petiole's line at its end, and the blade's plane beyond. */
@@ -212,7 +214,7 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, c
     if (!view.place) return PLM_E_MEMORY;
     view.count = flatten_near(leaf, scale, f, view.place);
     *junction = NAN;
-    const bool any = !leaf->may_be_small || plm_base_is_wide(&view);
+    const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
     const plm_status status = any ? plm_base_find(&view, expected, junction, error) : PLM_OK;
     plm_free(view.place);
     return status;
@@ -254,6 +256,7 @@ static plm_status set_leaf(const leaf_points *leaf, const plm_scale *scale, cons
         if (isnan(found)) break;
         f = next, junction = found, moved = shift;
     }
+    if (leaf->is_rosettes && moved + junction > MOST_MOVE * scale->radius) return PLM_OK;
     if (!isnan(junction)) relabel(leaf, scale, &f, -moved, junction, row, out);
     return PLM_OK;
 }

@@ -262,12 +262,13 @@ static void young_leaves_of_a_virtual_rosette_keep_their_blades(void **unused)
     virtual_plant_free(&made);
 }
 
-/* Points of petioles called leaf and the other way round: 139 before outlines told the borders of rosettes, 92 since. */
+/* Points of petioles called leaf and the other way round: 290 before outlines told the borders of rosettes, 205 since; 229 where a
+ * border may go farther than R, as it then goes to the tip of a blade. */
 static void the_outlines_of_a_rosettes_blades_tell_their_borders(void **unused)
 {
     (void)unused;
     size_t wrong = 0;
-    for (uint64_t seed = 301; seed <= 302; seed++) {
+    for (uint64_t seed = 301; seed <= 303; seed++) {
         const plm_scan_options options = {
             .scanner = PLM_SCANNER_RGBD, .seed = seed, .points = 45000, .noise = 5e-4, .views = 12};
         virtual_plant made = virtual_plant_make("arabidopsis", 0, &options);
@@ -278,7 +279,7 @@ static void the_outlines_of_a_rosettes_blades_tell_their_borders(void **unused)
         virtual_plant_free(&made);
     }
     print_message("%zu points on the wrong side\n", wrong);
-    assert_true(wrong < 115);
+    assert_true(wrong < 215);
 }
 
 int main(void)
