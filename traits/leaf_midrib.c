@@ -4,6 +4,7 @@
 #include "traits/leaf_midrib.h"
 
 #include "cloud/linear.h"
+#include "cloud/order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,6 +26,8 @@ static const double contact_share = 0.005; /* of the nodes: those nearest to the
 /* Spacings of nodes around the mean of these contacts outward and aside within which the blade ends: the lobes of a
  * heart-shaped base lie further aside. */
 static const double contact_reach = 2.5, contact_aside = 1.0;
+static const double end_share = 0.03; /* of a petiole's points: its end */
+static const double end_away = 0.5;   /* of the petiole's length: what is so far from all contacts is a stray */
 
 /* Where a found label has a petiole end and its blade begin, per thickness of the petiole, and at most per root of
  * the leaf's area: standard error on virtual plants. */
@@ -138,6 +141,68 @@ static int compare_contacts(const void *a, const void *b)
     return (x->node > y->node) - (x->node < y->node);
 }
 
+/* Mean of the nearest ones; gives the nearest of all. Sorts them. */
+static size_t mean_of_contacts(const way *w, contact *contacts, size_t count, double mean[3])
+{
+    qsort(contacts, count, sizeof *contacts, compare_contacts);
+    size_t used = (size_t)(contact_share * (double)count);
+    if (used < FEWEST_CONTACTS) used = FEWEST_CONTACTS < count ? FEWEST_CONTACTS : count;
+    memset(mean, 0, 3 * sizeof *mean);
+    for (size_t j = 0; j < used; j++)
+        for (int i = 0; i < 3; i++) mean[i] += w->xyz[contacts[j].node][i] / (double)used;
+    return contacts[0].node;
+}
+
+/* The end of a petiole that is away from its foot, which is farthest from a place in touch with the leaf: the mean of its
+ * points there. Deep lobes lie along the petiole: what of them is nearest to it tells another place. found: false where that end
+ * is not at the leaf. */
+static plm_status find_end(const plm_organ *petiole, const double touched[3], double end[3], bool *found,
+                           plm_error *error)
+{
+    double *off = plm_alloc(2 * petiole->count, sizeof *off, error);
+    if (!off) return PLM_E_MEMORY;
+    double *sorted = off + petiole->count;
+    const double *from = touched;
+    double foot[3], limit = 0;
+    for (int round = 0; round < 2; round++) { /* from the contact to the foot, from there to the end */
+        size_t farthest = 0;
+        for (size_t j = 0; j < petiole->count; j++) {
+            const double point[3] = {petiole->xyz[j][0], petiole->xyz[j][1], petiole->xyz[j][2]};
+            off[j] = plm_distance(point, from);
+            if (off[j] > off[farthest]) farthest = j;
+        }
+        for (int i = 0; i < 3 && !round; i++) foot[i] = petiole->xyz[farthest][i];
+        from = foot;
+    }
+    memcpy(sorted, off, petiole->count * sizeof *off);
+    limit = plm_order_quantile(sorted, petiole->count, 1 - end_share);
+    size_t count = 0;
+    memset(end, 0, 3 * sizeof *end);
+    for (size_t j = 0; j < petiole->count; j++) {
+        if (off[j] < limit) continue;
+        for (int i = 0; i < 3; i++) end[i] += petiole->xyz[j][i];
+        count++;
+    }
+    /* a share of the points is a share of the way: their mean lies half of it before the end */
+    for (int i = 0; i < 3; i++) end[i] = foot[i] + (end[i] / (double)count - foot[i]) * (1 + 0.5 * end_share);
+    *found = plm_distance(end, touched) < end_away * limit;
+    plm_free(off);
+    return PLM_OK;
+}
+
+/* Mean of the nodes [0, count) nearest to a place, and the nearest of all. */
+static plm_status nearest_nodes(const way *w, size_t count, const double place[3], double mean[3], size_t *nearest,
+                                plm_error *error)
+{
+    contact *contacts = plm_alloc(count, sizeof *contacts, error);
+    if (!contacts) return PLM_E_MEMORY;
+    const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
+    for (size_t j = 0; j < count; j++) contacts[j] = (contact){gap_between(w->xyz[j], at), j};
+    *nearest = mean_of_contacts(w, contacts, count, mean);
+    plm_free(contacts);
+    return PLM_OK;
+}
+
 /* Where nodes [first, end) come nearest to an organ: mean of the nearest ones, and the node nearest of all. */
 static plm_status find_contact(const way *w, size_t first, size_t end, const plm_organ *organ, double place[3],
                                size_t *nearest, plm_error *error)
@@ -150,13 +215,7 @@ static plm_status find_contact(const way *w, size_t first, size_t end, const plm
         plm_index_nearest(organ->index, w->xyz[first + j], 1, NULL, &squared);
         contacts[j] = (contact){squared, first + j};
     }
-    qsort(contacts, count, sizeof *contacts, compare_contacts);
-    size_t used = (size_t)(contact_share * (double)count);
-    if (used < FEWEST_CONTACTS) used = FEWEST_CONTACTS < count ? FEWEST_CONTACTS : count;
-    memset(place, 0, 3 * sizeof *place);
-    for (size_t j = 0; j < used; j++)
-        for (int i = 0; i < 3; i++) place[i] += w->xyz[contacts[j].node][i] / (double)used;
-    *nearest = contacts[0].node;
+    *nearest = mean_of_contacts(w, contacts, count, place);
     plm_free(contacts);
     return PLM_OK;
 }
@@ -271,13 +330,16 @@ static void place_tip(const way *w, const plm_mesh *mesh, size_t last, const dou
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
 }
 
-/* Moves the junction out to the end of the surface there: the mean of contacts lies inside by their own spread. */
-static void move_base(const plm_mesh *mesh, double area, const double tip[3], double base[3])
+/* Moves the junction out to the end of the surface there, but not beyond the petiole's (NULL: there is none): the mean of contacts
+ * lies inside by their own spread. */
+static void move_base(const plm_mesh *mesh, double area, const double tip[3], const double *end, double base[3])
 {
-    double out[3], node = sqrt(area / NODES);
+    double out[3], gap[3], node = sqrt(area / NODES);
     for (int i = 0; i < 3; i++) out[i] = base[i] - tip[i];
     plm_normalise(out);
-    const double furthest = reach_from(mesh, base, out, contact_reach * node, contact_aside * node);
+    double furthest = reach_from(mesh, base, out, contact_reach * node, contact_aside * node);
+    for (int i = 0; i < 3 && end; i++) gap[i] = end[i] - base[i];
+    if (end) furthest = fmin(furthest, fmax(plm_dot(gap, out), 0));
     for (int i = 0; i < 3; i++) base[i] += furthest * out[i];
 }
 
@@ -295,11 +357,15 @@ static plm_status simple_midrib(const plm_organ *leaf, const plm_organ *holder, 
     plm_midrib_line line;
     plm_status status = gather_nodes(&leaf->surface.mesh, NULL, &w, error);
     if (status == PLM_OK) status = find_contact(&w, 0, w.surface, holder, out->base, &start, error);
+    double end[3];
+    bool ends = holder->label == PLM_LABEL_PETIOLE;
+    if (status == PLM_OK && ends) status = find_end(holder, out->base, end, &ends, error);
+    if (status == PLM_OK && ends) status = nearest_nodes(&w, w.surface, end, out->base, &start, error);
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
         const size_t last = furthest_node(&w);
         place_tip(&w, &leaf->surface.mesh, last, out->base, out->tip);
-        move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, out->base);
+        move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, ends ? end : NULL, out->base);
         draw_line(&w, start, last, out->base, out->tip, &line);
         out->length = line.length;
         status = plm_midrib_width(&leaf->surface.mesh, &line, &out->width, error);

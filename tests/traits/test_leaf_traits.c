@@ -103,6 +103,39 @@ static void traits_of_a_plane_ellipse_are_those_that_were_built(void **unused)
     plm_measurement_free(&plant);
 }
 
+/* A level heart: a disk of 60 mm with a sinus of 10 mm whose sides lie near to the petiole all along. */
+static plm_cloud make_heart(void)
+{
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(POINTS, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    uint64_t seed = 22;
+    const double radius = 0.03, sinus = 0.01, slope = 0.35, thin = 0.0005;
+    for (size_t i = 0; i < POINTS;) {
+        const double u = test_uniform(&seed), v = test_uniform(&seed), turn = 2 * PLM_PI * v;
+        const double ahead = 2 * radius * u - sinus, side = 2 * radius * (v - 0.5);
+        if (i < STEM)
+            put(&cloud, i++, 0.002 * cos(turn), 0.002 * sin(turn), 0.1 * u, PLM_LABEL_STEM);
+        else if (i < STEM + PETIOLE)
+            put(&cloud, i++, 0.002 + stalk * u, thin * cos(turn), 0.06 + thin * sin(turn), PLM_LABEL_PETIOLE);
+        else if (hypot(ahead + sinus - radius, side) < radius && (ahead > 0 || fabs(side) > -slope * ahead))
+            put(&cloud, i++, 0.002 + stalk + ahead, side, 0.06, PLM_LABEL_LEAF);
+    }
+    return cloud;
+}
+
+/* 4 mm too long as long as what was nearest to the petiole at any place made the junction. */
+static void a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends(void **unused)
+{
+    (void)unused;
+    plm_cloud cloud = make_heart();
+    plm_measurement plant = measure(&cloud);
+    const plm_estimate estimate = find(&plant, "leaf_length", 0);
+    assert_int_equal(estimate.state, PLM_STATE_OK);
+    assert_near(estimate.value, 50.0, 1.0);
+    plm_measurement_free(&plant);
+}
+
 /* Without stem and petiole there is no junction: the midrib's traits say so, the others stand. */
 static void a_blade_alone_has_area_but_no_length(void **unused)
 {
@@ -243,6 +276,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(traits_of_a_plane_ellipse_are_those_that_were_built),
+        cmocka_unit_test(a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends),
         cmocka_unit_test(a_blade_alone_has_area_but_no_length),
         cmocka_unit_test(leaves_of_a_rosette_point_away_from_where_petioles_meet),
         cmocka_unit_test(the_error_of_an_arched_strap_tells_how_little_a_plane_is_determined),
