@@ -51,7 +51,7 @@ plm_status plm_subset_take(const plm_index *index, const float (*xyz)[3], size_t
     if (!(share < worth_choosing) || count == 0) return PLM_OK;
     uint32_t *row = plm_alloc(count, sizeof *row, error);
     if (!row) return PLM_E_MEMORY;
-    const size_t size = sample(xyz, count, (size_t)ceil(share * (double)count), count, row);
+    const size_t size = sample(xyz, count, (size_t)fmax(ceil(share * (double)count), 1), count, row);
     float(*few)[3] = plm_alloc(size, sizeof *few, error);
     plm_status status = few ? PLM_OK : PLM_E_MEMORY;
     for (size_t i = 0; few && i < size; i++) memcpy(few[i], xyz[row[i]], sizeof few[i]);

@@ -15,9 +15,9 @@
 #include <string.h>
 
 /* Lengths in R. */
-static const double BACK = 3;                               /* what of the leaf is looked at, to ROWS steps along */
-static const double STEP = 1.0 / 24, COLUMN = 1.0 / 18;     /* of the pixels along and across */
-static const double EXPECTED_SD = 0.25;                     /* of the first guess, in lengths of petiole seen */
+static const double BACK = 3;                           /* what of the leaf is looked at, to ROWS steps along */
+static const double STEP = 1.0 / 24, COLUMN = 1.0 / 18; /* of the pixels along and across */
+static const double EXPECTED_OFF = 0.25; /* half width of the first guess's errors, in lengths of petiole seen */
 static const double PETIOLE_FROM = -2.6, PETIOLE_TO = -0.4; /* these give the densities */
 static const double SHORTEST = 0.35;                        /* petiole that tells its density */
 static const double BLADE_FROM = 0.55, BLADE_TO = 1.8, BLADE_SIDE = 0.45;
@@ -284,7 +284,7 @@ static double side_evidence(const outline *o, int s, int junction)
 /* Log likelihood of a junction at a row: the outlines of either side, thickness, and what was expected. */
 static double judge(const outline *o, const evidence *e, int junction)
 {
-    const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_SD * -o->foot);
+    const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_OFF * -o->foot);
     const double sides = side_evidence(o, 0, junction) + side_evidence(o, 1, junction);
     return sides + THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - log1p(off * off);
 }

@@ -7,8 +7,8 @@
 
 /** Moves the border between petiole and leaf, in the labels of the plant's points, to where the outline of the blade says
  * that it begins. xyz: count points; row[i]: where point i is in out. Leaves without petiole, and those whose points tell no
- * border, stay as they are; of a rosette also those whose blades are too small for an outline or would begin far from
- * where they were thought to, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
+ * border, stay as they are; of a rosette also those whose blades are too small for an outline or would begin far
+ * towards the tip from where they were thought to, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                            plm_segmentation *out, plm_error *error);
 

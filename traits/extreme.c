@@ -329,7 +329,8 @@ static plm_status measure_band(const float (*band)[3], size_t count, const doubl
         if (status == PLM_E_DEGENERATE) status = PLM_OK; /* a few points, or all in one place: taken as they are */
     }
     if (options->noise > 0) sampling->noise = fmin(sampling->noise, options->noise);
-    sampling->noise = fmax(sampling->noise, options->least_noise);
+    if (sampling->spacing > 0)
+        sampling->noise = fmax(sampling->noise, options->least_noise); /* not where all coincide */
     sampling->extent = options->disc;
     const bool noisy = status == PLM_OK && sampling->noise > PLM_NOISE_FREE * sampling->spacing;
     plm_subset points = {0};

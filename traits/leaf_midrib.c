@@ -4,7 +4,7 @@
 #include "traits/leaf_midrib.h"
 
 #include "cloud/linear.h"
-#include "cloud/order.h"
+#include "traits/petiole_end.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,8 +26,6 @@ static const double contact_share = 0.005; /* of the nodes: those nearest to the
 /* Spacings of nodes around the mean of these contacts outward and aside within which the blade ends: the lobes of a
  * heart-shaped base lie further aside. */
 static const double contact_reach = 2.5, contact_aside = 1.0;
-static const double end_share = 0.03; /* of a petiole's points: its end */
-static const double end_away = 0.5;   /* of the petiole's length: what is so far from all contacts is a stray */
 
 /* Where a found label has a petiole end and its blade begin, per thickness of the petiole, and at most per root of
  * the leaf's area: standard error on virtual plants. */
@@ -151,43 +149,6 @@ static size_t mean_of_contacts(const way *w, contact *contacts, size_t count, do
     for (size_t j = 0; j < used; j++)
         for (int i = 0; i < 3; i++) mean[i] += w->xyz[contacts[j].node][i] / (double)used;
     return contacts[0].node;
-}
-
-/* The end of a petiole that is away from its foot, which is farthest from a place in touch with the leaf: the mean of its
- * points there. Deep lobes lie along the petiole: what of them is nearest to it tells another place. found: false where that end
- * is not at the leaf. */
-static plm_status find_end(const plm_organ *petiole, const double touched[3], double end[3], bool *found,
-                           plm_error *error)
-{
-    double *off = plm_alloc(2 * petiole->count, sizeof *off, error);
-    if (!off) return PLM_E_MEMORY;
-    double *sorted = off + petiole->count;
-    const double *from = touched;
-    double foot[3], limit = 0;
-    for (int round = 0; round < 2; round++) { /* from the contact to the foot, from there to the end */
-        size_t farthest = 0;
-        for (size_t j = 0; j < petiole->count; j++) {
-            const double point[3] = {petiole->xyz[j][0], petiole->xyz[j][1], petiole->xyz[j][2]};
-            off[j] = plm_distance(point, from);
-            if (off[j] > off[farthest]) farthest = j;
-        }
-        for (int i = 0; i < 3 && !round; i++) foot[i] = petiole->xyz[farthest][i];
-        from = foot;
-    }
-    memcpy(sorted, off, petiole->count * sizeof *off);
-    limit = plm_order_quantile(sorted, petiole->count, 1 - end_share);
-    size_t count = 0;
-    memset(end, 0, 3 * sizeof *end);
-    for (size_t j = 0; j < petiole->count; j++) {
-        if (off[j] < limit) continue;
-        for (int i = 0; i < 3; i++) end[i] += petiole->xyz[j][i];
-        count++;
-    }
-    /* a share of the points is a share of the way: their mean lies half of it before the end */
-    for (int i = 0; i < 3; i++) end[i] = foot[i] + (end[i] / (double)count - foot[i]) * (1 + 0.5 * end_share);
-    *found = plm_distance(end, touched) < end_away * limit;
-    plm_free(off);
-    return PLM_OK;
 }
 
 /* Mean of the nodes [0, count) nearest to a place, and the nearest of all. */
@@ -350,7 +311,8 @@ static double error_of_ends(const plm_leaf_surface *surface)
 
 /* ---- Simple and compound leaves ---------------------------------------------------------------------------------- */
 
-static plm_status simple_midrib(const plm_organ *leaf, const plm_organ *holder, plm_midrib *out, plm_error *error)
+static plm_status simple_midrib(const plm_scene *scene, const plm_organ *leaf, const plm_organ *holder, plm_midrib *out,
+                                plm_error *error)
 {
     way w = {0};
     size_t start = 0;
@@ -359,7 +321,8 @@ static plm_status simple_midrib(const plm_organ *leaf, const plm_organ *holder, 
     if (status == PLM_OK) status = find_contact(&w, 0, w.surface, holder, out->base, &start, error);
     double end[3];
     bool ends = holder->label == PLM_LABEL_PETIOLE;
-    if (status == PLM_OK && ends) status = find_end(holder, out->base, end, &ends, error);
+    if (status == PLM_OK && ends)
+        status = plm_petiole_end(holder, nearest_stem(scene, holder), leaf, end, &ends, error);
     if (status == PLM_OK && ends) status = nearest_nodes(&w, w.surface, end, out->base, &start, error);
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
@@ -470,7 +433,7 @@ plm_status plm_midrib_find(const plm_scene *scene, const plm_organ *leaf, plm_mi
     plm_midrib *made = plm_alloc_zero(1, sizeof *made, error);
     if (!made) return PLM_E_MEMORY;
     const plm_status status =
-        compound ? compound_midrib(scene, leaf, petiole, made, error) : simple_midrib(leaf, holder, made, error);
+        compound ? compound_midrib(scene, leaf, petiole, made, error) : simple_midrib(scene, leaf, holder, made, error);
     made->end_error = error_of_ends(&leaf->surface);
     made->thickness = thickness_of(holder);
     made->junction_error =

@@ -2,6 +2,7 @@
  * soil, on which noise and voxel means bear hardest. And their youngest leaves, of which a few points tell little. */
 #include "support/test.h"
 
+#include "cloud/linear.h"
 #include "simulate/simulate.h"
 #include "traits/traits.h"
 
@@ -115,6 +116,34 @@ static void heights_of_splats_know_the_noise(void **unused)
     }
 }
 
+/* A low dome whose top is a spot at which thousands of points coincide: there is no spacing there, and no noise to know. */
+static void points_that_coincide_have_a_height(void **unused)
+{
+    (void)unused;
+    enum { DOME = 20000, SPOT = 3000 };
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create(DOME + SPOT, 0, &cloud, &error));
+    uint64_t seed = 5;
+    for (size_t i = 0; i < DOME + SPOT; i++) {
+        const double radius = 0.06 * sqrt(test_uniform(&seed)), turn = 2 * PLM_PI * test_uniform(&seed);
+        double thrown = 0; /* noise of 0.5 mm */
+        for (int k = 0; k < 12; k++) thrown += 5e-4 * (test_uniform(&seed) - 0.5);
+        cloud.xyz[i][0] = i < DOME ? (float)(radius * cos(turn)) : 0.001f;
+        cloud.xyz[i][1] = i < DOME ? (float)(radius * sin(turn)) : 0.0005f;
+        cloud.xyz[i][2] = i < DOME ? (float)(0.012 * (1 - pow(radius / 0.06, 2)) + thrown) : 0.0135f;
+    }
+    plm_measure_options options;
+    plm_measure_defaults(&options);
+    options.up = PLM_UP_Z;
+    options.traits = "plant_height";
+    options.ground = PLM_GROUND_NONE;
+    plm_measurement measurement;
+    assert_ok(plm_measure(&cloud, &options, &measurement, &error));
+    assert_near(measurement.value[0].estimate.value, 0.0135, 2e-3);
+    plm_measurement_free(&measurement);
+}
+
 /* Petioles hang over the soil but do not stand in it: what lies below them is no foot of a stem. */
 static void soil_under_a_rosette_is_no_foot(void **unused)
 {
@@ -194,6 +223,7 @@ int main(void)
         cmocka_unit_test(the_foot_is_as_low_as_it_was_seen),
         cmocka_unit_test(petioles_tell_the_base_that_they_hide),
         cmocka_unit_test(heights_of_splats_know_the_noise),
+        cmocka_unit_test(points_that_coincide_have_a_height),
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),
         cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
         cmocka_unit_test(a_few_points_say_how_little_they_know),
