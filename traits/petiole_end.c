@@ -18,10 +18,10 @@ static void place_of(const float xyz[3], double place[3])
 /* Mean of the points whose keys are large, but for the largest, which may be strays'. scratch: as many as points. */
 static void mean_of_band(const plm_organ *organ, const double *key, double *scratch, double mean[3])
 {
+    const double last = (double)(organ->count - 1);
     memcpy(scratch, key, organ->count * sizeof *key);
-    const double high = plm_order_quantile(scratch, organ->count, 1 - beyond);
-    memcpy(scratch, key, organ->count * sizeof *key);
-    const double low = plm_order_quantile(scratch, organ->count, 1 - beyond - band);
+    const double high = plm_order_select(scratch, organ->count, (size_t)((1 - beyond) * last));
+    const double low = plm_order_select(scratch, organ->count, (size_t)((1 - beyond - band) * last));
     size_t count = 0;
     memset(mean, 0, 3 * sizeof *mean);
     for (size_t j = 0; j < organ->count; j++) {

@@ -6,6 +6,7 @@
 #include "cloud/linear.h"
 #include "io/io.h"
 #include "simulate/simulate.h"
+#include "traits/petiole_end.h"
 #include "traits/traits.h"
 
 enum { STEM = 3000, PETIOLE = 800, BLADE = 6000, POINTS = STEM + PETIOLE + BLADE };
@@ -139,6 +140,24 @@ static void a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends(void **u
         print_message("sinus of %.0f mm: %.2f mm long\n", 1e3 * sinus[k], estimate.value);
         assert_near(estimate.value, 1e3 * (0.06 - sinus[k]), 1.0);
         plm_measurement_free(&plant);
+    }
+}
+
+/* So few that no point lay between two quantiles of them. */
+static void a_petiole_of_a_few_points_has_an_end(void **unused)
+{
+    (void)unused;
+    for (size_t count = 1; count < 40; count++) {
+        float xyz[40][3] = {{0}}, blade[2][3] = {{0.05f, 0.001f, 0}, {0.06f, -0.001f, 0}};
+        for (size_t i = 0; i < count; i++) xyz[i][0] = 0.04f * (float)(i + 1) / (float)count;
+        const plm_organ petiole = {.label = PLM_LABEL_PETIOLE, .count = count, .xyz = xyz};
+        const plm_organ leaf = {.label = PLM_LABEL_LEAF, .count = 2, .xyz = blade, .centroid = {0.055, 0, 0}};
+        double end[3];
+        bool found;
+        plm_error error = {0};
+        assert_ok(plm_petiole_end(&petiole, NULL, &leaf, end, &found, &error));
+        assert_true(isfinite(end[0]) && isfinite(end[1]) && isfinite(end[2]));
+        if (count >= 12) assert_near(end[0], 0.04, 0.005);
     }
 }
 
@@ -283,6 +302,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(traits_of_a_plane_ellipse_are_those_that_were_built),
         cmocka_unit_test(a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends),
+        cmocka_unit_test(a_petiole_of_a_few_points_has_an_end),
         cmocka_unit_test(a_blade_alone_has_area_but_no_length),
         cmocka_unit_test(leaves_of_a_rosette_point_away_from_where_petioles_meet),
         cmocka_unit_test(the_error_of_an_arched_strap_tells_how_little_a_plane_is_determined),

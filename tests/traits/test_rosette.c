@@ -199,6 +199,41 @@ static void a_few_points_say_how_little_they_know(void **unused)
     }
 }
 
+/* What petioles are longer than they were built, in their length, on the mean over those whose leaves were found. */
+static double excess_of_petioles(uint64_t seed)
+{
+    plm_virtual_plant plant;
+    const plm_scan_options depth_camera = depth_camera_at(seed, false);
+    plm_measurement measurement = measure("leaf_area,petiole_length", seed, &depth_camera, false, &plant);
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < measurement.value_count; i++) {
+        const plm_trait_value *leaf = &measurement.value[i];
+        if (strcmp(leaf->trait->name, "leaf_area")) continue;
+        const double built = plant.petiole[nearest_leaf(&plant, leaf->centroid) - plant.leaf].length;
+        for (size_t j = 0; j < measurement.value_count; j++) {
+            const plm_trait_value *petiole = &measurement.value[j];
+            if (strcmp(petiole->trait->name, "petiole_length") || petiole->organ_id != leaf->organ_id) continue;
+            if (petiole->estimate.state != PLM_STATE_OK) continue;
+            sum += petiole->estimate.value / built - 1;
+            count++;
+        }
+    }
+    assert_true(count > 4);
+    plm_measurement_free(&measurement);
+    plm_virtual_plant_free(&plant);
+    return sum / count;
+}
+
+/* Their feet lie on each other: noise brings points from beyond the crown among a petiole's own. The mean was 0.12 once. */
+static void petioles_of_a_rosette_begin_outside_of_its_crown(void **unused)
+{
+    (void)unused;
+    double sum = 0;
+    for (uint64_t seed = 302; seed <= 304; seed++) sum += excess_of_petioles(seed) / 3;
+    print_message("petioles are %.3f too long\n", sum);
+    assert_true(sum < 0.09);
+}
+
 /* Stations of the youngest blades passed as tube: a quarter of a leaf of 4 square millimetres was called petiole. */
 static void the_youngest_blades_are_whole(void **unused)
 {
@@ -227,6 +262,7 @@ int main(void)
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),
         cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
         cmocka_unit_test(a_few_points_say_how_little_they_know),
+        cmocka_unit_test(petioles_of_a_rosette_begin_outside_of_its_crown),
         cmocka_unit_test(the_youngest_blades_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
