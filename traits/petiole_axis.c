@@ -9,6 +9,7 @@
 #include "traits/blurred_end.h"
 #include "traits/centre_line.h"
 #include "traits/petiole_course.h"
+#include "traits/petiole_end.h"
 #include "traits/tube_fit.h"
 
 #include <string.h>
@@ -123,17 +124,6 @@ static void ends_without_stem(petiole *p, double base[3], double far[3])
     memcpy(far, one_is_base ? other : one, 3 * sizeof *far);
 }
 
-/* Distance of a place from the nearest point of the petiole's leaf. */
-static double gap_to_leaf(const petiole *p, const double place[3])
-{
-    double least = INFINITY;
-    for (size_t i = 0; i < p->leaf->count; i++) {
-        const float *xyz = p->leaf->xyz[i];
-        least = fmin(least, plm_distance((double[3]){xyz[0], xyz[1], xyz[2]}, place));
-    }
-    return least;
-}
-
 /* Ends: the base is the one nearest to the stem, except where the leaf begins there: then what was called stem is not what
  * carries the petiole, and is left out of it. */
 static void first_ends(petiole *p, double base[3], double far[3])
@@ -148,7 +138,7 @@ static void first_ends(petiole *p, double base[3], double far[3])
     for (size_t i = 0; i < p->points.count; i++) p->distance[i] = -plm_distance(p->points.xyz[i], base);
     mean_of_nearest(p, p->distance, far);
     if (!p->leaf) return;
-    const double turned = gap_to_leaf(p, far) - gap_to_leaf(p, base);
+    const double turned = plm_organ_gap(p->leaf, far) - plm_organ_gap(p->leaf, base);
     if (!(turned > turned_round * plm_distance(base, far))) return;
     p->stem = NULL;
     ends_without_stem(p, base, far);

@@ -32,12 +32,11 @@ static void mean_of_band(const plm_organ *organ, const double *key, double *scra
     for (int i = 0; i < 3; i++) mean[i] /= (double)count;
 }
 
-static double gap_to(const plm_organ *leaf, const double place[3])
+double plm_organ_gap(const plm_organ *organ, const double place[3])
 {
-    double least = INFINITY;
-    for (size_t j = 0; j < leaf->count; j++) {
-        double point[3];
-        place_of(leaf->xyz[j], point);
+    double least = INFINITY, point[3];
+    for (size_t j = 0; j < organ->count; j++) {
+        place_of(organ->xyz[j], point);
         least = fmin(least, plm_distance(point, place));
     }
     return least;
@@ -63,7 +62,7 @@ plm_status plm_petiole_end(const plm_organ *petiole, const plm_organ *stem, cons
     mean_of_band(petiole, key, scratch, end);
     /* a share of the points is a share of the way */
     for (int i = 0; i < 3; i++) end[i] = foot[i] + (end[i] - foot[i]) / (1 - beyond - 0.5 * band);
-    *found = gap_to(leaf, end) < gap_to(leaf, foot);
+    *found = plm_organ_gap(leaf, end) < plm_organ_gap(leaf, foot);
     plm_free(key);
     return PLM_OK;
 }

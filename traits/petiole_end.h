@@ -10,4 +10,7 @@
 plm_status plm_petiole_end(const plm_organ *petiole, const plm_organ *stem, const plm_organ *leaf, double end[3],
                            bool *found, plm_error *error);
 
+/** Distance of a place from an organ's nearest point; INFINITY without points. */
+double plm_organ_gap(const plm_organ *organ, const double place[3]);
+
 #endif
