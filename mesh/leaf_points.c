@@ -2,7 +2,7 @@
  * order of the input's rows, and neighbours lie near each other in memory. */
 #include "mesh/leaf_points.h"
 
-#include "cloud/linear.h"
+#include "cloud/local_plane.h"
 #include "cloud/sampling.h"
 #include "cloud/selection.h"
 #include "cloud/spatial_order.h"
@@ -148,22 +148,14 @@ static plm_status find_neighbours(plm_leaf_points *points, uint32_t *neighbour, 
  * these; 0 where they are too few to tell. limit is above 0. */
 static double off_sheet(const plm_leaf_points *points, size_t row, const uint32_t *around, size_t count, double limit)
 {
-    double mean[3] = {0, 0, 0}, moment[6] = {0}, value[3], axis[3][3], off = 0;
     uint32_t used[AROUND];
     size_t n = 0;
     for (size_t j = 0; j < count; j++)
         if (around[j] != row && points->reach[around[j]] <= limit) used[n++] = around[j];
     if (n < FEWEST_AROUND) return 0;
-    for (size_t j = 0; j < n; j++)
-        for (int i = 0; i < 3; i++) mean[i] += (double)points->xyz[used[j]][i] / (double)n;
-    for (size_t j = 0; j < n; j++)
-        for (int a = 0, k = 0; a < 3; a++)
-            for (int b = a; b < 3; b++, k++)
-                moment[k] += ((double)points->xyz[used[j]][a] - mean[a]) * ((double)points->xyz[used[j]][b] - mean[b]);
-    plm_eigen3(moment, value, axis);
-    for (int i = 0; i < 3; i++) off += axis[2][i] * ((double)points->xyz[row][i] - mean[i]);
-    const double squared = fmax(value[2], 0) / (double)(n - 3); /* a plane takes three */
-    return fabs(off) / fmax(sqrt(squared), exact * limit);
+    double scatter;
+    const double off = plm_local_plane_distance((const float(*)[3])points->xyz, used, n, points->xyz[row], &scatter);
+    return off / fmax(scatter, exact * limit);
 }
 
 /* Whether a voxel mean is a ghost: sparser than those around it, and off their sheet. */

@@ -245,8 +245,10 @@ plm_status plm_rachis_clear(plm_leaf_way *way, const uint32_t *trail, size_t cou
     uint32_t *row = plm_scratch_take(&scratch, way->count, sizeof *row);
     if (!scratch.failed) {
         follow(&l, trail, count, CORE * way->tube, clear);
-        for (int round = 0; round < ROUNDS && clear_width(&l, clear) < SLIMMER * way->tube; round++) {
-            way->tube = clear_width(&l, clear);
+        for (int round = 0; round < ROUNDS; round++) {
+            const double width = clear_width(&l, clear);
+            if (!(width < SLIMMER * way->tube)) break;
+            way->tube = width;
             follow(&l, trail, count, CORE * way->tube, clear);
         }
         measure_clear(&l, clear, beside, CORE * way->tube, row, way);

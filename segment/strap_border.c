@@ -3,8 +3,8 @@
  * begins at the stem's surface, where its plane leaves it. */
 #include "segment/strap_border.h"
 
+#include "cloud/local_plane.h"
 #include "cloud/neighbours.h"
-#include "segment/local_plane.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
@@ -50,7 +50,7 @@ static int32_t nearer_leaf(const blades *b, const float place[3], double off, do
     if (most < FEWEST || sqrt((double)squared[first]) >= gap + off) return -1;
     for (size_t k = 0; k < found; k++)
         if (b->leaf[row[k]] == b->leaf[row[first]]) mine[count++] = row[k];
-    const bool is_leaf = plm_local_plane_distance((const float(*)[3])b->xyz, mine, count, place) < off;
+    const bool is_leaf = plm_local_plane_distance((const float(*)[3])b->xyz, mine, count, place, NULL) < off;
     return is_leaf ? b->leaf[row[first]] : -1;
 }
 

@@ -3,7 +3,7 @@
  * passes nearest to it. */
 #include "segment/strap_trunk.h"
 
-#include "segment/local_plane.h"
+#include "cloud/local_plane.h"
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
 
@@ -81,7 +81,7 @@ static double misfit(const plm_sketch *s, const candidate *c, uint32_t centre)
     const float(*xyz)[3] = (const float(*)[3])s->working.xyz;
     double far = 0;
     for (int k = 0; k < c->count; k++) far += sqrt((double)c->squared[k]);
-    return plm_local_plane_distance(xyz, c->point, (size_t)c->count, xyz[centre]) + NEARNESS * far / c->count;
+    return plm_local_plane_distance(xyz, c->point, (size_t)c->count, xyz[centre], NULL) + NEARNESS * far / c->count;
 }
 
 static int32_t choose(const plm_sketch *s, const candidate *list, int count, uint32_t centre)

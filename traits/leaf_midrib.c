@@ -318,12 +318,13 @@ static plm_status simple_midrib(const plm_scene *scene, const plm_organ *leaf, c
     size_t start = 0;
     plm_midrib_line line;
     plm_status status = gather_nodes(&leaf->surface.mesh, NULL, &w, error);
-    if (status == PLM_OK) status = find_contact(&w, 0, w.surface, holder, out->base, &start, error);
     double end[3];
     bool ends = holder->label == PLM_LABEL_PETIOLE;
     if (status == PLM_OK && ends)
         status = plm_petiole_end(holder, nearest_stem(scene, holder), leaf, end, &ends, error);
-    if (status == PLM_OK && ends) status = nearest_nodes(&w, w.surface, end, out->base, &start, error);
+    if (status == PLM_OK)
+        status = ends ? nearest_nodes(&w, w.surface, end, out->base, &start, error)
+                      : find_contact(&w, 0, w.surface, holder, out->base, &start, error);
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
         const size_t last = furthest_node(&w);

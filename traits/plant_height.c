@@ -20,7 +20,7 @@ static plm_status find_top(const plm_scene *scene, double least_noise, plm_extre
     return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &options, top, error);
 }
 
-/* The noise of the whole of a low plant, or 0: the few small ones at its top and the petioles at its foot are narrower than what the
+/* The noise of the whole of a low plant, or 0: the few small leaves at its top and the petioles at its foot are narrower than what the
  * noise is measured by, and read a tenth to a third less. Where the plant may be a rosette the index that it is from is built
  * for the heights. In fused scans it differs between places. */
 static double noise_of_rosette(const plm_scene *scene)
