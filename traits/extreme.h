@@ -18,9 +18,9 @@ typedef struct plm_extreme_options {
     const plm_sampling *sampling; /**< spacing and noise of the surface there, which is most of the work; or NULL */
     double noise; /**< measured elsewhere on the plant: taken where the surface there reads more, as a tube as thin as a
                    * quadric is wide does; or 0 */
-    double
-        least_noise; /**< measured elsewhere: taken where the surface there reads less, as leaves narrower than the quadrics that
-                         * such noise needs do; or 0 */
+    /** Measured elsewhere: taken where the surface there reads less, as leaves narrower than the quadrics that such noise needs do;
+     * or 0. */
+    double least_noise;
     double disc; /**< of splats, the radius by which fitted discs reach past their centres, added where the surface
                    * ends side-on; 0 for other clouds, and where it is cut off rather than rimmed (the foot of a stem) */
 } plm_extreme_options;
