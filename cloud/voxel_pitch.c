@@ -20,12 +20,16 @@ enum {
 static const double finest = 0.7, coarsest = 3.5;
 static const double lines_per_size = 4.0; /* a line is as wide as one period over the points' extent */
 /* Sum over the axes of squared gathering, and its ratio to that of frequencies beside. Organs (a stem's x and y) have broad
- * spectra, grids a line. Voxel means of virtual depth cameras: 0.1 to 0.8. */
-static const double least_power = 0.04, least_ratio = 8.0;
-/* All three axes show the grid: turned about one axis, it shows along that one alone (by 30 degrees: 0.28, the others 0.01), or as
- * one of another pitch along the other two (by 45: 0.4, the third by chance). Least of the weakest axis, and of the middle one
- * against the strongest; 0.047 and 0.7 in virtual scans. */
+ * spectra, grids a line, beside which a plant whose points are few and far apart has much. Voxel means of virtual depth cameras:
+ * 0.1 to 0.8 and 4.5 to 300; where there is no grid, or a turned one, the power is below 0.04 everywhere. */
+static const double least_power = 0.04, least_ratio = 4.0;
+/* All three axes show the grid: turned about one axis, it shows along that one alone (by 30 degrees: 0.28, the others 0.01).
+ * Least of the weakest axis, and of the middle one against the strongest; 0.047 and 0.7 in virtual scans. */
 static const double least_line = 0.035, least_middle = 0.5;
+/* Leaves that lie across an axis, thinner than a voxel, show nothing along that one where the other two show it well (scans with
+ * little noise: 0.01 to 0.04 beside 0.5). Turned by 45 degrees, a grid shows as one of another pitch along two axes (0.4), but more
+ * so along their diagonals. */
+static const double least_of_two = 0.25, most_diagonal = 0.5;
 /* Mean gathering of the better two axes above which the coordinates are the grid's own. */
 static const double own_grid = 0.95;
 static const double least_noise = 0.12; /* of the pitch: depth cameras have 0.2 and more */
@@ -157,18 +161,31 @@ static double extent_of(const coordinates axis[3])
     return extent;
 }
 
-/* Whether all the coordinates gather at a frequency as voxel means do. */
+/* Length of the mean wave along the diagonals of two axes, whose period is that of a grid turned by 45 degrees; the larger one. */
+static double diagonal_height(const coordinates *a, const coordinates *b, double frequency)
+{
+    phase sum = {0, 0}, difference = {0, 0};
+    for (size_t i = 0; i < a->count; i++) {
+        add(&sum, phase_of(frequency / 2 * (a->value[i] + b->value[i])));
+        add(&difference, phase_of(frequency / 2 * (a->value[i] - b->value[i])));
+    }
+    return sqrt(fmax(squared_length(sum), squared_length(difference))) / (double)a->count;
+}
+
+/* Whether the coordinates gather at a frequency as voxel means do; axis: all of the same points. */
 static bool is_grid(const coordinates axis[3], double frequency)
 {
-    double height[3], weakest = HUGE_VAL, strongest = 0, sum = 0;
+    double height[3];
+    int weakest = 0;
     for (int k = 0; k < 3; k++) {
         height[k] = line_height(&axis[k], frequency);
-        weakest = fmin(weakest, height[k]);
-        strongest = fmax(strongest, height[k]);
-        sum += height[k];
+        if (height[k] < height[weakest]) weakest = k;
     }
-    const double middle = sum - weakest - strongest;
-    return weakest >= least_line && middle >= least_middle * strongest && (middle + strongest) / 2 <= own_grid;
+    const int one = (weakest + 1) % 3, two = (weakest + 2) % 3;
+    const double middle = fmin(height[one], height[two]), strongest = fmax(height[one], height[two]);
+    if (middle < least_middle * strongest || (middle + strongest) / 2 > own_grid) return false;
+    if (diagonal_height(&axis[one], &axis[two], frequency) > most_diagonal * middle) return false;
+    return height[weakest] >= least_line || middle >= least_of_two;
 }
 
 /* part: the same points as whole, its own copy. phases: room for two of each point; scratch: for one and MOST_LINES + 2. */

@@ -71,6 +71,61 @@ static void the_pitch_is_found_and_points_gather_the_more_the_more_pixels_there_
     assert_true(before > 0.4 && before < 0.9);
 }
 
+/* A level sheet's place in its voxels is its own along the third axis, not the pixels' mean. */
+static void a_level_sheet_shows_its_grid_along_two_axes(void **unused)
+{
+    (void)unused;
+    enum { N = 200000 };
+    uint64_t seed = 11;
+    float(*xyz)[3] = malloc(N * sizeof *xyz);
+    assert_non_null(xyz);
+    for (size_t i = 0; i < N; i++) {
+        const double x = side * test_uniform(&seed), y = side * test_uniform(&seed);
+        xyz[i][0] = (float)x;
+        xyz[i][1] = (float)y;
+        const double bend = 0.02 * side * sin(30 * x);
+        xyz[i][2] = (float)(0.1 * x + 0.06 * y + bend + 0.3 * cell * test_normal(&seed));
+    }
+    plm_voxels voxels = fuse((const float(*)[3])xyz, N);
+    double along[3];
+    plm_voxel_gathering((const float(*)[3])voxels.xyz, voxels.count, cell, along);
+    assert_true(along[0] > 0.3 && along[1] > 0.3 && along[2] < 0.035);
+    assert_near(pitch_of((const float(*)[3])voxels.xyz, voxels.count), cell, 0.25 * cell * cell / side);
+    /* Turned by 45 degrees it has another pitch along the same two axes. */
+    for (size_t i = 0; i < voxels.count; i++) {
+        const double x = voxels.xyz[i][0], y = voxels.xyz[i][1];
+        voxels.xyz[i][0] = (float)((x - y) * sqrt(0.5));
+        voxels.xyz[i][1] = (float)((x + y) * sqrt(0.5));
+    }
+    assert_true(pitch_of((const float(*)[3])voxels.xyz, voxels.count) == 0);
+    plm_voxels_free(&voxels);
+    free(xyz);
+}
+
+/* Around the line of a few small patches it is full of the fringes between them. */
+static void a_line_among_fringes_is_found(void **unused)
+{
+    (void)unused;
+    enum { N = 60000, PATCHES = 4, ROUNDS = 6 };
+    uint64_t seed = 12;
+    float(*xyz)[3] = malloc(N * sizeof *xyz);
+    assert_non_null(xyz);
+    for (int round = 0; round < ROUNDS; round++) {
+        double place[PATCHES][3];
+        for (int p = 0; p < PATCHES; p++)
+            for (int k = 0; k < 3; k++) place[p][k] = side * test_uniform(&seed);
+        for (size_t i = 0; i < N; i++)
+            for (int k = 0; k < 3; k++) {
+                const double along = k < 2 ? 0.006 * test_uniform(&seed) : 0;
+                xyz[i][k] = (float)(place[i % PATCHES][k] + along + noise * test_normal(&seed));
+            }
+        plm_voxels voxels = fuse((const float(*)[3])xyz, N);
+        assert_near(pitch_of((const float(*)[3])voxels.xyz, voxels.count), cell, 0.25 * cell * cell / side);
+        plm_voxels_free(&voxels);
+    }
+    free(xyz);
+}
+
 static void a_cloud_without_a_grid_has_no_pitch(void **unused)
 {
     (void)unused;
@@ -157,6 +212,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_pitch_is_found_and_points_gather_the_more_the_more_pixels_there_are),
+        cmocka_unit_test(a_level_sheet_shows_its_grid_along_two_axes),
+        cmocka_unit_test(a_line_among_fringes_is_found),
         cmocka_unit_test(a_cloud_without_a_grid_has_no_pitch),
         cmocka_unit_test(a_grid_along_other_axes_is_not_taken_for_one),
         cmocka_unit_test(few_points_without_a_grid_gather_little),
