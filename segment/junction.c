@@ -25,7 +25,7 @@ static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 static const double LEAST_CLEAR = 0.15; /* the same where nothing but a tube lies about the line */
 static const double BLADE = 2;          /* widths of the tube that the last leaflet reaches at least */
 static const double NEAR = 3.2;         /* points within so many widths of a tube station's middle are of the tube */
-static const double NEAR_CLEAR = 1.9;   /* the same where leaflets may lie beside it */
+static const double NEAR_CLEAR = 2.2;   /* the same where leaflets may lie beside it */
 static const double FOOT_LINE = 2;      /* length of the petiole that gives its line at the foot, in R */
 static const double FOOT = 0.35;        /* in R: stations before are cut by the stem */
 static const double SUBSTEP = 0.1;      /* of a step, in the search for the change */
@@ -293,8 +293,7 @@ static double fit_growth(const plm_leaf_way *way, double d, size_t low, size_t h
     return squares;
 }
 
-/* Distance at which the width begins to grow: that from which a step and a slope fit the widths around the split best. */
-static double change(const plm_leaf_way *way, size_t first, size_t split)
+double plm_leaf_change(const plm_leaf_way *way, size_t first, size_t split)
 {
     const size_t low = split > first + BEFORE ? split - BEFORE : first;
     size_t high = split + AFTER < way->station_count ? split + AFTER : way->station_count;
@@ -435,7 +434,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     if (status != PLM_OK || !way->count) return status;
     const size_t split = compound ? last_split(w, w->first) : plm_leaf_only_split(way, w->first);
     if (split <= w->first || split >= way->station_count) return PLM_OK;
-    way->junction = change(way, w->first, split);
+    way->junction = plm_leaf_change(way, w->first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
         return PLM_OK;
     if (compound)

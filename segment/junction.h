@@ -50,4 +50,8 @@ void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t c
  * on, up to the widest, are narrow. */
 size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first);
 
+/** Distance, from station 0, at which the width begins to grow: that from which a step and a slope fit the widths around the
+ * split best, first at the least. */
+double plm_leaf_change(const plm_leaf_way *way, size_t first, size_t split);
+
 #endif

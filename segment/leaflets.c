@@ -194,7 +194,7 @@ static size_t split_hanging(work *w, uint32_t *row, size_t count)
         while (end < count && way->distance[row[end]] < from + way->window) end++;
         plm_station_measure(w->sketch, row + begin, end - begin, &w->station[k]);
     }
-    const double at = low + (double)plm_leaf_only_split(&hanging, 0) * way->step;
+    const double at = low + plm_leaf_change(&hanging, 0, plm_leaf_only_split(&hanging, 0));
     size_t before = 0;
     while (before < count && way->distance[row[before]] < at) before++;
     return before;

@@ -5,6 +5,7 @@
 #include "segment/rachis_line.h"
 
 #include "cloud/linear.h"
+#include "segment/rachis_sides.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -34,6 +35,7 @@ typedef struct line {
     uint32_t *core, *flank;
     float *off;        /* of each point in the way's order, from its nearest node */
     uint32_t *station; /* of its nearest node */
+    bool *aside;       /* of a leaflet at the side: tells nothing about what is on the line */
     bool (*came)[2];   /* scratch, as many as stations, as is value */
     float *value;
 } line;
@@ -126,7 +128,7 @@ static void count_points(line *l, double reach)
     for (size_t k = 0; k < l->way->count; k++) {
         if (l->off[k] < reach)
             l->core[l->station[k]]++;
-        else if (l->off[k] < 2 * reach)
+        else if (l->off[k] < 2 * reach && !l->aside[k])
             l->flank[l->station[k]]++;
     }
 }
@@ -202,7 +204,7 @@ static void measure_clear(const line *l, const bool *clear, bool *beside, double
 }
 
 /* The line, what is about it, and which stations are clear, for a reach. */
-static void follow(line *l, const uint32_t *trail, size_t count, double reach, bool *clear)
+static plm_status follow(line *l, const uint32_t *trail, size_t count, double reach, bool *clear, plm_error *error)
 {
     memset(l->sum, 0, l->count * sizeof *l->sum);
     memset(l->core, 0, l->count * sizeof *l->core);
@@ -213,9 +215,12 @@ static void follow(line *l, const uint32_t *trail, size_t count, double reach, b
         centre(l, reach);
     }
     assign(l);
+    const plm_status status = plm_rachis_sides(l->way, l->off, l->station, reach, l->aside, error);
+    if (status != PLM_OK) return status;
     count_points(l, reach);
     find_clear(l, typical_core(l), clear);
     drop_unjoined(l, clear);
+    return PLM_OK;
 }
 
 /* Median width of the narrow stations that are clear: leaflets that balls call tubes are not among them. */
@@ -241,18 +246,18 @@ plm_status plm_rachis_clear(plm_leaf_way *way, const uint32_t *trail, size_t cou
               .came = plm_scratch_take(&scratch, way->station_count, sizeof *l.came),
               .value = plm_scratch_take(&scratch, way->station_count, sizeof *l.value),
               .off = plm_scratch_take(&scratch, way->count, sizeof *l.off),
-              .station = plm_scratch_take(&scratch, way->count, sizeof *l.station)};
+              .station = plm_scratch_take(&scratch, way->count, sizeof *l.station),
+              .aside = plm_scratch_take(&scratch, way->count, sizeof *l.aside)};
     uint32_t *row = plm_scratch_take(&scratch, way->count, sizeof *row);
-    if (!scratch.failed) {
-        follow(&l, trail, count, CORE * way->tube, clear);
-        for (int round = 0; round < ROUNDS; round++) {
-            const double width = clear_width(&l, clear);
-            if (!(width < SLIMMER * way->tube)) break;
-            way->tube = width;
-            follow(&l, trail, count, CORE * way->tube, clear);
-        }
-        measure_clear(&l, clear, beside, CORE * way->tube, row, way);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) status = follow(&l, trail, count, CORE * way->tube, clear, error);
+    for (int round = 0; round < ROUNDS && status == PLM_OK; round++) {
+        const double width = clear_width(&l, clear);
+        if (!(width < SLIMMER * way->tube)) break;
+        way->tube = width;
+        status = follow(&l, trail, count, CORE * way->tube, clear, error);
     }
+    if (status == PLM_OK) measure_clear(&l, clear, beside, CORE * way->tube, row, way);
     plm_scratch_free(&scratch, NULL);
-    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    return status;
 }

@@ -87,10 +87,13 @@ static void find_clear(leaf *l, bool *clear, bool *beside, plm_leaf_way *way)
 {
     bool *is_tube = calloc(MOST, sizeof *is_tube);
     assert_non_null(is_tube);
-    const plm_sketch sketch = {.working = {.count = l->count, .xyz = l->xyz, .cell = STEP}, .is_tube = is_tube};
+    plm_sketch sketch = {.working = {.count = l->count, .xyz = l->xyz, .cell = STEP}, .is_tube = is_tube};
+    sketch.scale.radius = 0.003;
     plm_error error = {0};
+    assert_ok(plm_graph_build((const float(*)[3])l->xyz, l->count, 10, 3 * STEP, &sketch.graph, &error));
     make_way(l, &sketch, way);
     assert_ok(plm_rachis_clear(way, l->trail, l->trail_count, clear, beside, &error));
+    plm_graph_free(&sketch.graph);
     free(is_tube);
 }
 
@@ -113,6 +116,39 @@ static void rachis_between_leaflets_is_clear_of_them(void **state)
         assert_true(way.station[k].width < 0.0018); /* 6 mm and more with the leaflets */
     }
     for (size_t k = 44; k < 56; k++) assert_false(beside[k]);
+    for (size_t k = 64; k < way.station_count; k++) assert_false(clear[k]);
+}
+
+/* A sheet to both sides of the line, from y0 to y1 off it. */
+static void add_pair(leaf *l, double x0, double x1, double y0, double y1)
+{
+    add_sheet(l, x0, x1, y0, y1);
+    add_sheet(l, x0, x1, -y1, -y0);
+}
+
+/* Leaflets that lie as near to the rachis as a blade does, for 10 mm, tell nothing about it. */
+static void rachis_is_clear_among_leaflets_that_touch_it(void **state)
+{
+    (void)state;
+    static leaf l;
+    static bool clear[STATIONS], beside[STATIONS];
+    plm_leaf_way way;
+    l = (leaf){.random = {.key = plm_key(3, 0)}};
+    add_tube(&l, 0, 0.060);
+    add_pair(&l, 0.043, 0.053, 0.0018, 0.006);
+    add_pair(&l, 0.038, 0.056, 0.006, 0.020);
+    add_sheet(&l, 0.060, 0.085, -0.012, 0.012);
+    find_clear(&l, clear, beside, &way);
+    for (size_t k = 10; k < 57; k++) assert_true(clear[k]);
+    for (size_t k = 64; k < way.station_count; k++) assert_false(clear[k]);
+    /* So near to the last leaflet that points between them join them, here and there. */
+    l = (leaf){.random = {.key = plm_key(4, 0)}};
+    add_tube(&l, 0, 0.060);
+    add_pair(&l, 0.043, 0.053, 0.0018, 0.006);
+    add_pair(&l, 0.038, 0.058, 0.006, 0.020);
+    add_sheet(&l, 0.060, 0.085, -0.012, 0.012);
+    find_clear(&l, clear, beside, &way);
+    for (size_t k = 10; k < 57; k++) assert_true(clear[k]);
     for (size_t k = 64; k < way.station_count; k++) assert_false(clear[k]);
 }
 
@@ -140,6 +176,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rachis_between_leaflets_is_clear_of_them),
+        cmocka_unit_test(rachis_is_clear_among_leaflets_that_touch_it),
         cmocka_unit_test(thin_place_amid_a_blade_is_no_rachis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

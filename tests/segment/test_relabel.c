@@ -191,6 +191,43 @@ static void leaflets_called_tube_are_blade_behind_their_petiolules(void **unused
     plm_graph_free(&sketch.graph);
 }
 
+/* Leaflets that widen from where they leave the rachis on have no petiolule, though they are as narrow as one there. */
+static void leaflets_that_widen_at_once_begin_at_the_rachis(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_leaf_way way;
+    plm_sketch sketch = empty_sketch(1);
+    for (int k = 0; k < STEPS; k++) {
+        for (int i = 0; i < 12; i++) add(&sketch, 1e-3 * k, 1e-3 * cos(i), 1e-3 * sin(i), false, true, 0);
+        station[k] = (plm_station){.width = 0.7e-3, .middle = {1e-3 * k, 0, 0}, .count = 12};
+    }
+    for (int i = 0; i < 30; i++)
+        for (int j = -i / 2; j <= i / 2; j++) add(&sketch, 0.03 + 4e-4 * j, 1.8e-3 + 4e-4 * i, 0, false, true, 0);
+    for (uint32_t i = 0; i < sketch.working.count; i++) {
+        order[i] = i;
+        distance[i] = is_rachis(i) ? xyz[i][0] : 0.03F + fabsf(xyz[i][1]);
+    }
+    qsort(order, sketch.working.count, sizeof *order, by_distance);
+    assert_ok(plm_graph_build((const float(*)[3])xyz, sketch.working.count, 8, 1.2e-3, &sketch.graph, &error));
+    sketch.scale.radius = 5e-3;
+    sketch.working.cell = 4e-4;
+    way = (plm_leaf_way){.sketch = &sketch,
+                         .count = sketch.working.count,
+                         .order = order,
+                         .distance = distance,
+                         .station_count = STEPS,
+                         .station = station,
+                         .step = 1e-3,
+                         .window = 3e-3,
+                         .tube = 0.7e-3,
+                         .junction = 58e-3};
+    assert_ok(plm_leaf_leaflets(&sketch, &way, &error));
+    for (size_t i = 0; i < sketch.working.count; i++)
+        if (xyz[i][1] > 3e-3F) assert_false(is_tube[i]); /* as wide as the rachis at 5 mm */
+    plm_graph_free(&sketch.graph);
+}
+
 typedef struct shares {
     double petiole, leaf; /* of the points that are so, those called so */
 } shares;
@@ -289,6 +326,7 @@ int main(void)
         cmocka_unit_test(what_lies_amid_a_blade_stays),
         cmocka_unit_test(the_rachis_goes_on_among_leaflets),
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
+        cmocka_unit_test(leaflets_that_widen_at_once_begin_at_the_rachis),
         cmocka_unit_test(rachises_of_virtual_plants_are_found),
         cmocka_unit_test(leaflets_of_virtual_plants_are_found_in_noise),
         cmocka_unit_test(young_leaves_of_a_virtual_rosette_keep_their_blades),
