@@ -28,8 +28,9 @@ static const double BARE_ALONE = 0.5, BRANCH_RADIUS = 0.6;
 static const double STRAP_SLIM = 0.7, STRAP_WITH_TUBES = 0.73;
 /* Straps have one blade, seldom two a leaf where noise tears them: from so many on, straps ask for more than thick feet by
  * themselves give (two real maize of 2.4 and more blades give 0.91 and more), and slim ones say nothing: balls that suit a stem
- * are large for the rachises of many leaves, which then look thick. Not where straps are folded: their feet alone tell. */
-static const double MANY_BLADES = 2, STRAP_OF_MANY = 0.65;
+ * are large for the rachises of many leaves, which then look thick (0.52 and 0.54 of a real and a virtual tomato of 1.6 and 1.8
+ * blades; straps that are not folded have 1.5 at most). Not where straps are folded: their feet alone tell. */
+static const double MANY_BLADES = 1.55, STRAP_OF_MANY = 0.65;
 /* Blades a leaf from which on leaves are compound: simple ones have one (1.17 at most over 90 virtual plants, where a scan
  * tore one), compound ones more even where noise tears them into leaves of their own (1.29 at least). Three on one foot are
  * no tear; without them more is asked for. */

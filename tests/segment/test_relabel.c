@@ -276,6 +276,23 @@ static void leaflets_of_virtual_plants_are_found_in_noise(void **unused)
     }
 }
 
+/* Balls that suit the stem are large for its rachises, which look as thick as the feet of straps: what has two blades a leaf is no
+ * strap plant for that alone. */
+static void a_virtual_tomato_of_thick_rachises_is_compound(void **unused)
+{
+    (void)unused;
+    const plm_scan_options options = {.scanner = PLM_SCANNER_RGBD,
+                                      .seed = 19002,
+                                      .points = 45000,
+                                      .noise = 5e-4,
+                                      .views = 12,
+                                      .outliers = 0.005,
+                                      .image_width = 1200};
+    virtual_plant made = virtual_plant_make("tomato", 0, &options);
+    assert_int_equal(made.found.habit, PLM_HABIT_COMPOUND);
+    virtual_plant_free(&made);
+}
+
 /* Of the blade's points of leaves that have few, those called so. In noise an eighth was taken for petioles. */
 static void young_leaves_of_a_virtual_rosette_keep_their_blades(void **unused)
 {
@@ -328,6 +345,7 @@ int main(void)
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
         cmocka_unit_test(leaflets_that_widen_at_once_begin_at_the_rachis),
         cmocka_unit_test(rachises_of_virtual_plants_are_found),
+        cmocka_unit_test(a_virtual_tomato_of_thick_rachises_is_compound),
         cmocka_unit_test(leaflets_of_virtual_plants_are_found_in_noise),
         cmocka_unit_test(young_leaves_of_a_virtual_rosette_keep_their_blades),
         cmocka_unit_test(the_outlines_of_a_rosettes_blades_tell_their_borders),
