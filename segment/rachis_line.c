@@ -24,7 +24,9 @@ enum {
     ROUNDS = 2, /* of moving the line to the middle of what is about it */
     FEWEST = 4, /* points that tell a middle */
     ABOUT = 3,  /* stations to both sides whose points on the line are counted: how dense what is there is */
-    SURE = 5    /* narrow stations, one after the other, that are the rachis beyond its foot */
+    DENSE =
+        3, /* points on the line of a station at the least, typically, where leaflets' pieces tell sides: fewer are torn */
+    SURE = 5 /* narrow stations, one after the other, that are the rachis beyond its foot */
 };
 
 typedef struct line {
@@ -123,14 +125,16 @@ static void centre(line *l, double reach)
     smooth(l);
 }
 
-static void count_points(line *l, double reach)
+static void count_core(line *l, double reach)
 {
-    for (size_t k = 0; k < l->way->count; k++) {
-        if (l->off[k] < reach)
-            l->core[l->station[k]]++;
-        else if (l->off[k] < 2 * reach && !l->aside[k])
-            l->flank[l->station[k]]++;
-    }
+    for (size_t k = 0; k < l->way->count; k++)
+        if (l->off[k] < reach) l->core[l->station[k]]++;
+}
+
+static void count_flank(line *l, double reach)
+{
+    for (size_t k = 0; k < l->way->count; k++)
+        if (l->off[k] >= reach && l->off[k] < 2 * reach && !l->aside[k]) l->flank[l->station[k]]++;
 }
 
 /* Median number of points on the line of stations that are narrow; 0 where there are none. */
@@ -215,10 +219,14 @@ static plm_status follow(line *l, const uint32_t *trail, size_t count, double re
         centre(l, reach);
     }
     assign(l);
-    const plm_status status = plm_rachis_sides(l->way, l->off, l->station, reach, l->aside, error);
+    count_core(l, reach);
+    const double typical = typical_core(l);
+    memset(l->aside, 0, l->way->count * sizeof *l->aside);
+    const plm_status status =
+        typical < DENSE ? PLM_OK : plm_rachis_sides(l->way, l->off, l->station, reach, l->aside, error);
     if (status != PLM_OK) return status;
-    count_points(l, reach);
-    find_clear(l, typical_core(l), clear);
+    count_flank(l, reach);
+    find_clear(l, typical, clear);
     drop_unjoined(l, clear);
     return PLM_OK;
 }
