@@ -5,6 +5,7 @@
 #include "cloud/selection.h"
 #include "cloud/subset.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -23,13 +24,16 @@ static const double lines_per_size = 4.0; /* a line is as wide as one period ove
  * spectra, grids a line, beside which a plant whose points are few and far apart has much. Voxel means of virtual depth cameras:
  * 0.1 to 0.8 and 4.5 to 300; where there is no grid, or a turned one, the power is below 0.04 everywhere. */
 static const double least_power = 0.04, least_ratio = 4.0;
-/* All three axes show the grid: turned about one axis, it shows along that one alone (by 30 degrees: 0.28, the others 0.01).
- * Least of the weakest axis, and of the middle one against the strongest; 0.047 and 0.7 in virtual scans. */
+/* All three axes show the grid, or two show it well (see below): turned about one axis, it shows along that one alone (by 30
+ * degrees: 0.28, the others 0.01). Least of the weakest axis, and of the middle one against the strongest; 0.047 and 0.7 in virtual scans. */
 static const double least_line = 0.035, least_middle = 0.5;
 /* Leaves that lie across an axis, thinner than a voxel, show nothing along that one where the other two show it well (scans with
  * little noise: 0.01 to 0.04 beside 0.5). Turned by 45 degrees, a grid shows as one of another pitch along two axes (0.4), but more
  * so along their diagonals. */
 static const double least_of_two = 0.25, most_diagonal = 0.5;
+/* So does a single depth image along its rows and columns, but it has one point a pixel: share of points that have another in the
+ * same column of voxels across the two axes; 0.8 and more in virtual scans, 0.2 at most in images of uneven ground. */
+static const double least_stacked = 0.5;
 /* Mean gathering of the better two axes above which the coordinates are the grid's own. */
 static const double own_grid = 0.95;
 static const double least_noise = 0.12; /* of the pitch: depth cameras have 0.2 and more */
@@ -172,25 +176,58 @@ static double diagonal_height(const coordinates *a, const coordinates *b, double
     return sqrt(fmax(squared_length(sum), squared_length(difference))) / (double)a->count;
 }
 
-/* Whether the coordinates gather at a frequency as voxel means do; axis: all of the same points. */
-static bool is_grid(const coordinates axis[3], double frequency)
+/* What shows a grid. */
+typedef enum grid_kind { GRID_NONE, GRID_OF_THREE, GRID_OF_TWO } grid_kind;
+
+/* Whether the coordinates gather at a frequency as voxel means do; axis: all of the same points. weakest: out, the axis that shows
+ * it least. */
+static grid_kind judge_grid(const coordinates axis[3], double frequency, int *weakest)
 {
     double height[3];
-    int weakest = 0;
+    *weakest = 0;
     for (int k = 0; k < 3; k++) {
         height[k] = line_height(&axis[k], frequency);
-        if (height[k] < height[weakest]) weakest = k;
+        if (height[k] < height[*weakest]) *weakest = k;
     }
-    const int one = (weakest + 1) % 3, two = (weakest + 2) % 3;
+    const int one = (*weakest + 1) % 3, two = (*weakest + 2) % 3;
     const double middle = fmin(height[one], height[two]), strongest = fmax(height[one], height[two]);
-    if (middle < least_middle * strongest || (middle + strongest) / 2 > own_grid) return false;
-    if (diagonal_height(&axis[one], &axis[two], frequency) > most_diagonal * middle) return false;
-    return height[weakest] >= least_line || middle >= least_of_two;
+    if (middle < least_middle * strongest || (middle + strongest) / 2 > own_grid) return GRID_NONE;
+    if (diagonal_height(&axis[one], &axis[two], frequency) > most_diagonal * middle) return GRID_NONE;
+    if (height[*weakest] >= least_line) return GRID_OF_THREE;
+    return middle >= least_of_two ? GRID_OF_TWO : GRID_NONE;
+}
+
+typedef struct column {
+    double one, two;
+} column;
+
+static int by_column(const void *a, const void *b)
+{
+    const column *p = a, *q = b;
+    if (p->one != q->one) return p->one < q->one ? -1 : 1;
+    return (p->two > q->two) - (p->two < q->two);
+}
+
+/* Share of points that have another in their column of voxels along an axis. columns: scratch of count rows. */
+static double stacked_share(const float (*xyz)[3], size_t count, int along, double pitch, column *columns)
+{
+    const int one = (along + 1) % 3, two = (along + 2) % 3;
+    size_t stacked = 0;
+    for (size_t i = 0; i < count; i++)
+        columns[i] = (column){floor((double)xyz[i][one] / pitch), floor((double)xyz[i][two] / pitch)};
+    qsort(columns, count, sizeof *columns, by_column);
+    for (size_t first = 0, last; first < count; first = last) {
+        for (last = first + 1; last < count && by_column(&columns[first], &columns[last]) == 0;) last++;
+        if (last - first > 1) stacked += last - first;
+    }
+    return (double)stacked / (double)count;
 }
 
 /* part: the same points as whole, its own copy. phases: room for two of each point; scratch: for one and MOST_LINES + 2. */
-static double pitch_of(const coordinates whole[3], coordinates part[3], double spacing, phase *phases, double *scratch)
+static double pitch_of(const coordinates whole[3], coordinates part[3], double spacing, phase *phases, double *scratch,
+                       grid_kind *kind, int *weakest)
 {
+    *kind = GRID_NONE;
     const double size = extent_of(whole), low = 1 / (coarsest * spacing), high = 1 / (finest * spacing);
     /* As many periods as there are frequencies for: a stretch of a large cloud shows the line as well. */
     const double length = fmin(size, MOST_LINES / (lines_per_size * (high - low)));
@@ -203,7 +240,8 @@ static double pitch_of(const coordinates whole[3], coordinates part[3], double s
     const size_t line = strongest_line(scratch, lines);
     if (line == lines) return 0;
     const double frequency = refine(whole, low + step * (double)line, step, 0.01 / size);
-    return is_grid(whole, frequency) ? 1 / frequency : 0;
+    *kind = judge_grid(whole, frequency, weakest);
+    return *kind == GRID_NONE ? 0 : 1 / frequency;
 }
 
 plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spacing, double *pitch, plm_error *error)
@@ -215,7 +253,9 @@ plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spac
     if (taken > 2 * SAMPLE) taken = 2 * SAMPLE; /* many in one place are all taken or none */
     double *values = row ? plm_alloc(7 * taken + MOST_LINES + 2, sizeof *values, error) : NULL;
     phase *phases = values ? plm_alloc(2 * taken + 1, sizeof *phases, error) : NULL;
-    const plm_status status = phases ? PLM_OK : PLM_E_MEMORY;
+    plm_status status = phases ? PLM_OK : PLM_E_MEMORY;
+    grid_kind kind = GRID_NONE;
+    int weakest = 0;
     if (status == PLM_OK && taken >= FEWEST) {
         coordinates whole[3], part[3];
         for (size_t k = 0; k < 3; k++) {
@@ -223,7 +263,13 @@ plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spac
             part[k] = (coordinates){taken, values + (2 * k + 1) * taken};
             for (size_t i = 0; i < taken; i++) whole[k].value[i] = part[k].value[i] = (double)xyz[row[i]][k];
         }
-        *pitch = pitch_of(whole, part, spacing, phases, values + 6 * taken);
+        *pitch = pitch_of(whole, part, spacing, phases, values + 6 * taken, &kind, &weakest);
+    }
+    if (kind == GRID_OF_TWO) {
+        column *columns = plm_alloc(count, sizeof *columns, error);
+        if (!columns) status = PLM_E_MEMORY;
+        if (!columns || stacked_share(xyz, count, weakest, *pitch, columns) < least_stacked) *pitch = 0;
+        plm_free(columns);
     }
     plm_free(row);
     plm_free(values);

@@ -11,8 +11,9 @@
 #include "cloud/sampling.h"
 
 /** Edge of the cubes whose means the points are, in their unit, so exact that it drifts by less than a twentieth of a voxel over
- * the points' extent; 0 where the coordinates show no grid along all three axes: no voxel means, one pixel a voxel, a cloud that
- * was turned off its grid, or coordinates that lie on a grid themselves (rounded, or centres of voxels). spacing: as plm_sampling.
+ * the points' extent; 0 where the coordinates show no grid along all three axes, or well along two and
+ * points stacked along the third: no voxel means, one pixel a voxel, a cloud that was turned off its grid, a single depth image, or
+ * coordinates that lie on a grid themselves (rounded, or centres of voxels). spacing: as plm_sampling.
  * A few thousand points are looked at, chosen by their coordinates. PLM_E_MEMORY. */
 plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spacing, double *pitch, plm_error *error);
 

@@ -1,7 +1,7 @@
 /* segment/leaflets.c: rachis, petiolules and leaflets of a compound leaf. Balls see blade on both sides of the rachis where
  * leaflets sit on it, and a tube where noise makes a small leaflet thick. The level sets tell the rachis where no leaflet is;
- * between two such stretches it goes straight on. What hangs on it at one place is a petiolule while it is as narrow as
- * the rachis, and then a leaflet. */
+ * between two such stretches it goes straight on. What hangs on it at one place is a petiolule until it begins to
+ * widen, and then a leaflet. */
 #include "segment/junction.h"
 
 #include "cloud/linear.h"

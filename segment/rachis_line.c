@@ -1,7 +1,7 @@
 /* segment/rachis_line.c: the rachis between leaflets that are joined at its sides. The level sets of the distance from the
  * foot take in the leaflets beside the rachis where they touch it or each other; about the rachis' own line there is a gap
  * before the next leaflet begins all the same: a sheet has as many points between one and two radii from the line as within
- * one, a tube has nearly none. */
+ * one, a tube has nearly none. Leaflets that are known to hang at the sides (rachis_sides.c) are not counted, gap or none. */
 #include "segment/rachis_line.h"
 
 #include "cloud/linear.h"

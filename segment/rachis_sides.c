@@ -3,7 +3,6 @@
 
 #include "segment/scratch.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Medians of the links' lengths: points of one blade are nearer, and gaps are wider; and what parts blades that touch. */

@@ -6,7 +6,7 @@
 
 /** Of each of way->count points, in the way's order: whether it is of a blade that lies beside the line along a part of it only
  * and leaves it well before the tip, as leaflets at the rachis' sides do. The two halves of the last leaflet, which the line
- * parts, accompany it to the tip.
+ * parts, accompany it to the tip. Pieces smaller than a blade are of none.
  * off, station  distance of each point from the line, and the line's station nearest to it.
  * reach         what is within is on the line, up to twice as far lies beside it.
  * aside         out, the caller's. PLM_E_MEMORY. */

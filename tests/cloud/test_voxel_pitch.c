@@ -102,6 +102,26 @@ static void a_level_sheet_shows_its_grid_along_two_axes(void **unused)
     free(xyz);
 }
 
+/* Rows and columns of a depth camera over leaves that lie uneven show along two axes as well, but no voxel stands on another. */
+static void a_single_depth_image_has_no_grid(void **unused)
+{
+    (void)unused;
+    enum { SIDE = 100 };
+    uint64_t seed = 13;
+    float(*xyz)[3] = malloc(SIDE * SIDE * sizeof *xyz);
+    assert_non_null(xyz);
+    for (int relief = 4; relief <= 32; relief *= 2) {
+        for (size_t i = 0; i < SIDE * SIDE; i++) {
+            const double u = ((double)(i % SIDE) - 49.5) * 1e-3, v = (floor((double)i / SIDE) - 49.5) * 1e-3;
+            const double z = 1 + 1e-3 * relief * sin(60 * u) * cos(60 * v) + 5e-4 * test_normal(&seed);
+            const double place[3] = {u * z, v * z, z};
+            for (int k = 0; k < 3; k++) xyz[i][k] = (float)place[k];
+        }
+        assert_true(pitch_of((const float(*)[3])xyz, SIDE * SIDE) == 0);
+    }
+    free(xyz);
+}
+
 /* Around the line of a few small patches it is full of the fringes between them. */
 static void a_line_among_fringes_is_found(void **unused)
 {
@@ -213,6 +233,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_pitch_is_found_and_points_gather_the_more_the_more_pixels_there_are),
         cmocka_unit_test(a_level_sheet_shows_its_grid_along_two_axes),
+        cmocka_unit_test(a_single_depth_image_has_no_grid),
         cmocka_unit_test(a_line_among_fringes_is_found),
         cmocka_unit_test(a_cloud_without_a_grid_has_no_pitch),
         cmocka_unit_test(a_grid_along_other_axes_is_not_taken_for_one),
