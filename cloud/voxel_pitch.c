@@ -4,8 +4,8 @@
 #include "cloud/linear.h"
 #include "cloud/selection.h"
 #include "cloud/subset.h"
+#include "cloud/voxel.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -176,58 +176,49 @@ static double diagonal_height(const coordinates *a, const coordinates *b, double
     return sqrt(fmax(squared_length(sum), squared_length(difference))) / (double)a->count;
 }
 
-/* What shows a grid. */
-typedef enum grid_kind { GRID_NONE, GRID_OF_THREE, GRID_OF_TWO } grid_kind;
-
-/* Whether the coordinates gather at a frequency as voxel means do; axis: all of the same points. weakest: out, the axis that shows
- * it least. */
-static grid_kind judge_grid(const coordinates axis[3], double frequency, int *weakest)
+/* Whether the coordinates gather at a frequency as voxel means do; axis: all of the same points. across: out, the axis that shows no
+ * grid while the other two do; -1 where all do. */
+static bool is_grid(const coordinates axis[3], double frequency, int *across)
 {
     double height[3];
-    *weakest = 0;
+    int weakest = 0;
     for (int k = 0; k < 3; k++) {
         height[k] = line_height(&axis[k], frequency);
-        if (height[k] < height[*weakest]) *weakest = k;
+        if (height[k] < height[weakest]) weakest = k;
     }
-    const int one = (*weakest + 1) % 3, two = (*weakest + 2) % 3;
+    const int one = (weakest + 1) % 3, two = (weakest + 2) % 3;
     const double middle = fmin(height[one], height[two]), strongest = fmax(height[one], height[two]);
-    if (middle < least_middle * strongest || (middle + strongest) / 2 > own_grid) return GRID_NONE;
-    if (diagonal_height(&axis[one], &axis[two], frequency) > most_diagonal * middle) return GRID_NONE;
-    if (height[*weakest] >= least_line) return GRID_OF_THREE;
-    return middle >= least_of_two ? GRID_OF_TWO : GRID_NONE;
+    *across = height[weakest] >= least_line ? -1 : weakest;
+    if (middle < least_middle * strongest || (middle + strongest) / 2 > own_grid) return false;
+    if (diagonal_height(&axis[one], &axis[two], frequency) > most_diagonal * middle) return false;
+    return *across < 0 || middle >= least_of_two;
 }
 
-typedef struct column {
-    double one, two;
-} column;
-
-static int by_column(const void *a, const void *b)
+/* Share of points that have another in their column of voxels along an axis; 0 where the cloud is too large for voxels. */
+static plm_status stacked_share(const float (*xyz)[3], size_t count, int along, double pitch, double *share,
+                                plm_error *error)
 {
-    const column *p = a, *q = b;
-    if (p->one != q->one) return p->one < q->one ? -1 : 1;
-    return (p->two > q->two) - (p->two < q->two);
-}
-
-/* Share of points that have another in their column of voxels along an axis. columns: scratch of count rows. */
-static double stacked_share(const float (*xyz)[3], size_t count, int along, double pitch, column *columns)
-{
-    const int one = (along + 1) % 3, two = (along + 2) % 3;
-    size_t stacked = 0;
-    for (size_t i = 0; i < count; i++)
-        columns[i] = (column){floor((double)xyz[i][one] / pitch), floor((double)xyz[i][two] / pitch)};
-    qsort(columns, count, sizeof *columns, by_column);
-    for (size_t first = 0, last; first < count; first = last) {
-        for (last = first + 1; last < count && by_column(&columns[first], &columns[last]) == 0;) last++;
-        if (last - first > 1) stacked += last - first;
+    float(*flat)[3] = plm_alloc(count, sizeof *flat, error);
+    plm_voxels columns = {0};
+    *share = 0;
+    if (!flat) return PLM_E_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(flat[i], xyz[i], sizeof *flat);
+        flat[i][along] = 0;
     }
-    return (double)stacked / (double)count;
+    const plm_status status = plm_voxel_thin((const float(*)[3])flat, count, pitch, &columns, error);
+    for (size_t v = 0; status == PLM_OK && v < columns.count; v++)
+        if (columns.size[v] > 1) *share += columns.size[v] / (double)count;
+    plm_voxels_free(&columns);
+    plm_free(flat);
+    return status == PLM_E_ARGUMENT ? PLM_OK : status;
 }
 
-/* part: the same points as whole, its own copy. phases: room for two of each point; scratch: for one and MOST_LINES + 2. */
+/* part: the same points as whole, its own copy. phases: room for two of each point; scratch: for one and MOST_LINES + 2.
+ * across: as is_grid. */
 static double pitch_of(const coordinates whole[3], coordinates part[3], double spacing, phase *phases, double *scratch,
-                       grid_kind *kind, int *weakest)
+                       int *across)
 {
-    *kind = GRID_NONE;
     const double size = extent_of(whole), low = 1 / (coarsest * spacing), high = 1 / (finest * spacing);
     /* As many periods as there are frequencies for: a stretch of a large cloud shows the line as well. */
     const double length = fmin(size, MOST_LINES / (lines_per_size * (high - low)));
@@ -240,8 +231,7 @@ static double pitch_of(const coordinates whole[3], coordinates part[3], double s
     const size_t line = strongest_line(scratch, lines);
     if (line == lines) return 0;
     const double frequency = refine(whole, low + step * (double)line, step, 0.01 / size);
-    *kind = judge_grid(whole, frequency, weakest);
-    return *kind == GRID_NONE ? 0 : 1 / frequency;
+    return is_grid(whole, frequency, across) ? 1 / frequency : 0;
 }
 
 plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spacing, double *pitch, plm_error *error)
@@ -254,8 +244,7 @@ plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spac
     double *values = row ? plm_alloc(7 * taken + MOST_LINES + 2, sizeof *values, error) : NULL;
     phase *phases = values ? plm_alloc(2 * taken + 1, sizeof *phases, error) : NULL;
     plm_status status = phases ? PLM_OK : PLM_E_MEMORY;
-    grid_kind kind = GRID_NONE;
-    int weakest = 0;
+    int across = -1;
     if (status == PLM_OK && taken >= FEWEST) {
         coordinates whole[3], part[3];
         for (size_t k = 0; k < 3; k++) {
@@ -263,13 +252,12 @@ plm_status plm_voxel_pitch_find(const float (*xyz)[3], size_t count, double spac
             part[k] = (coordinates){taken, values + (2 * k + 1) * taken};
             for (size_t i = 0; i < taken; i++) whole[k].value[i] = part[k].value[i] = (double)xyz[row[i]][k];
         }
-        *pitch = pitch_of(whole, part, spacing, phases, values + 6 * taken, &kind, &weakest);
+        *pitch = pitch_of(whole, part, spacing, phases, values + 6 * taken, &across);
     }
-    if (kind == GRID_OF_TWO) {
-        column *columns = plm_alloc(count, sizeof *columns, error);
-        if (!columns) status = PLM_E_MEMORY;
-        if (!columns || stacked_share(xyz, count, weakest, *pitch, columns) < least_stacked) *pitch = 0;
-        plm_free(columns);
+    if (*pitch > 0 && across >= 0) {
+        double share;
+        status = stacked_share(xyz, count, across, *pitch, &share, error);
+        if (share < least_stacked) *pitch = 0;
     }
     plm_free(row);
     plm_free(values);

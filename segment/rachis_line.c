@@ -24,9 +24,8 @@ enum {
     ROUNDS = 2, /* of moving the line to the middle of what is about it */
     FEWEST = 4, /* points that tell a middle */
     ABOUT = 3,  /* stations to both sides whose points on the line are counted: how dense what is there is */
-    DENSE =
-        3, /* points on the line of a station at the least, typically, where leaflets' pieces tell sides: fewer are torn */
-    SURE = 5 /* narrow stations, one after the other, that are the rachis beyond its foot */
+    DENSE = 3,  /* points on the line of a station, typically: of leaves with fewer, blades are torn to pieces */
+    SURE = 5    /* narrow stations, one after the other, that are the rachis beyond its foot */
 };
 
 typedef struct line {
@@ -221,9 +220,11 @@ static plm_status follow(line *l, const uint32_t *trail, size_t count, double re
     assign(l);
     count_core(l, reach);
     const double typical = typical_core(l);
-    memset(l->aside, 0, l->way->count * sizeof *l->aside);
-    const plm_status status =
-        typical < DENSE ? PLM_OK : plm_rachis_sides(l->way, l->off, l->station, reach, l->aside, error);
+    plm_status status = PLM_OK;
+    if (typical >= DENSE)
+        status = plm_rachis_sides(l->way, l->off, l->station, reach, l->aside, error);
+    else
+        memset(l->aside, 0, l->way->count * sizeof *l->aside);
     if (status != PLM_OK) return status;
     count_flank(l, reach);
     find_clear(l, typical, clear);

@@ -7,12 +7,13 @@
 
 /* Medians of the links' lengths: points of one blade are nearer, and gaps are wider; and what parts blades that touch. */
 static const double JOINED = 1.5, JOINED_CLOSELY = 1.15;
-static const double PART =
-    0.5; /* of the way from its first place on the line to the tip: a leaflet at the side leaves before */
+/* Of the way from its first place on the line to the tip: a leaflet at the side leaves before. */
+static const double PART = 0.5;
 /* Share of its points beside the line, and stations that it goes on beyond the last place there: what was parted by close links
  * may be torn from the last leaflet, which lies along the line. */
 static const double BESIDE_MOST = 0.3;
-static const double WHOLE = 0.9; /* of the share of points in large pieces: close links tear blades of uneven points */
+static const double WHOLE =
+    0.9; /* of the points in large pieces: with fewer left in them, close links tear blades of uneven points */
 enum { BEYOND = 2 };
 
 /* What hangs together off the line. */
@@ -84,7 +85,7 @@ static bool is_side(const piece *p, double tip, bool closely)
     return !closely || ((double)p->beside < BESIDE_MOST * (double)p->size && p->end >= p->last + BEYOND);
 }
 
-/* Marks the pieces at the sides among the points that are not yet. Gives the share of these points in pieces as large as blades. */
+/* Marks the pieces at the sides among the points that are not marked yet. Gives the share of these in pieces as large as blades. */
 static double find_sides(work *w, const float *off, const uint32_t *station, double reach, bool closely, bool *aside)
 {
     const plm_leaf_way *way = w->way;
@@ -111,11 +112,11 @@ plm_status plm_rachis_sides(const plm_leaf_way *way, const float *off, const uin
     plm_scratch scratch = {.error = error};
     work w = {.way = way,
               .place = plm_scratch_take(&scratch, way->sketch->working.count, sizeof *w.place),
-              .member = plm_scratch_take(&scratch, way->count + 1, sizeof *w.member),
-              .length = plm_scratch_take(&scratch, way->count + 1, sizeof *w.length)};
-    bool *parted = plm_scratch_take(&scratch, way->count + 1, sizeof *parted);
+              .member = plm_scratch_take(&scratch, way->count, sizeof *w.member),
+              .length = plm_scratch_take(&scratch, way->count, sizeof *w.length)};
+    bool *parted = plm_scratch_take(&scratch, way->count, sizeof *parted);
     if (!scratch.failed) {
-        for (size_t k = 0; k < way->count; k++) aside[k] = false;
+        memset(aside, 0, way->count * sizeof *aside);
         const double share = find_sides(&w, off, station, reach, false, aside);
         memcpy(parted, aside, way->count * sizeof *parted);
         if (find_sides(&w, off, station, reach, true, parted) >= WHOLE * share)

@@ -107,11 +107,34 @@ static bool is_petiolule(size_t i)
     return xyz[i][1] > 2e-3 && xyz[i][1] < 11.9e-3;
 }
 
+/* The way along a rachis of 60 mm, and out from its middle beside it. */
+static void walk_rachis(plm_sketch *sketch, double cell, plm_leaf_way *way)
+{
+    plm_error error = {0};
+    for (uint32_t i = 0; i < sketch->working.count; i++) {
+        order[i] = i;
+        distance[i] = is_rachis(i) ? xyz[i][0] : 0.03F + fabsf(xyz[i][1]);
+    }
+    qsort(order, sketch->working.count, sizeof *order, by_distance);
+    assert_ok(plm_graph_build((const float(*)[3])xyz, sketch->working.count, 8, 1.2e-3, &sketch->graph, &error));
+    sketch->scale.radius = 5e-3;
+    sketch->working.cell = cell;
+    *way = (plm_leaf_way){.sketch = sketch,
+                          .count = sketch->working.count,
+                          .order = order,
+                          .distance = distance,
+                          .station_count = STEPS,
+                          .station = station,
+                          .step = 1e-3,
+                          .window = 3e-3,
+                          .tube = 0.7e-3,
+                          .junction = 58e-3};
+}
+
 /* A rachis of radius 1 mm along x, 60 mm; leaflets 10 mm wide to both sides at 25 to 35 mm, where it was called blade as
  * they were. The level sets say that it is 0.7 mm wide, where there are no leaflets. */
 static plm_sketch rachis_with_leaflets(plm_leaf_way *way)
 {
-    plm_error error = {0};
     plm_sketch sketch = empty_sketch(1);
     for (int k = 0; k < STEPS; k++) {
         const bool wide = k >= 25 && k < 35;
@@ -127,24 +150,7 @@ static plm_sketch rachis_with_leaflets(plm_leaf_way *way)
             add(&sketch, 0.025 + 5e-4 * j, 0.012 + 5e-4 * i, 0, false, false, 0);
             add(&sketch, 0.025 + 5e-4 * j, -0.004 - 5e-4 * i, 0, false, false, 0);
         }
-    for (uint32_t i = 0; i < sketch.working.count; i++) {
-        order[i] = i;
-        distance[i] = is_rachis(i) ? xyz[i][0] : 0.03F + fabsf(xyz[i][1]);
-    }
-    qsort(order, sketch.working.count, sizeof *order, by_distance);
-    assert_ok(plm_graph_build((const float(*)[3])xyz, sketch.working.count, 8, 1.2e-3, &sketch.graph, &error));
-    sketch.scale.radius = 5e-3;
-    sketch.working.cell = 5e-4;
-    *way = (plm_leaf_way){.sketch = &sketch,
-                          .count = sketch.working.count,
-                          .order = order,
-                          .distance = distance,
-                          .station_count = STEPS,
-                          .station = station,
-                          .step = 1e-3,
-                          .window = 3e-3,
-                          .tube = 0.7e-3,
-                          .junction = 58e-3};
+    walk_rachis(&sketch, 5e-4, way);
     return sketch;
 }
 
@@ -204,24 +210,7 @@ static void leaflets_that_widen_at_once_begin_at_the_rachis(void **unused)
     }
     for (int i = 0; i < 30; i++)
         for (int j = -i / 2; j <= i / 2; j++) add(&sketch, 0.03 + 4e-4 * j, 1.8e-3 + 4e-4 * i, 0, false, true, 0);
-    for (uint32_t i = 0; i < sketch.working.count; i++) {
-        order[i] = i;
-        distance[i] = is_rachis(i) ? xyz[i][0] : 0.03F + fabsf(xyz[i][1]);
-    }
-    qsort(order, sketch.working.count, sizeof *order, by_distance);
-    assert_ok(plm_graph_build((const float(*)[3])xyz, sketch.working.count, 8, 1.2e-3, &sketch.graph, &error));
-    sketch.scale.radius = 5e-3;
-    sketch.working.cell = 4e-4;
-    way = (plm_leaf_way){.sketch = &sketch,
-                         .count = sketch.working.count,
-                         .order = order,
-                         .distance = distance,
-                         .station_count = STEPS,
-                         .station = station,
-                         .step = 1e-3,
-                         .window = 3e-3,
-                         .tube = 0.7e-3,
-                         .junction = 58e-3};
+    walk_rachis(&sketch, 4e-4, &way);
     assert_ok(plm_leaf_leaflets(&sketch, &way, &error));
     for (size_t i = 0; i < sketch.working.count; i++)
         if (xyz[i][1] > 3e-3F) assert_false(is_tube[i]); /* as wide as the rachis at 5 mm */
