@@ -12,8 +12,9 @@ static const double PART = 0.5;
 /* Share of its points beside the line, and stations that it goes on beyond the last place there: what was parted by close links
  * may be torn from the last leaflet, which lies along the line. */
 static const double BESIDE_MOST = 0.3;
-static const double WHOLE =
-    0.9; /* of the points in large pieces: with fewer left in them, close links tear blades of uneven points */
+/* With less in large pieces than this, of the share that the whole leaf has, close links tear blades of uneven points. Measured by the
+ * rest alone, halves of sparse last leaflets would pass where large ones hang at the sides. */
+static const double WHOLE = 0.9;
 enum { BEYOND = 2 };
 
 /* What hangs together off the line. */

@@ -181,12 +181,21 @@ plm_status batch_has(const batch *open, size_t input, const char *sha256, bool *
 
 /* ---- Results ------------------------------------------------------------------------------------------------------ */
 
+/* A record of no plants, before the first tables: a run that is killed between these and its record goes on as well. */
+static plm_status begin_record(const batch *open, plm_error *error)
+{
+    char path[LONGEST_PATH];
+    plm_status status = join(path, sizeof path, open->folder, "run", ".json", error);
+    if (status == PLM_OK && !exists(path)) status = plm_run_json_write(path, open->options, &(plm_results){0}, error);
+    return status;
+}
+
 plm_status batch_save(batch *open, plm_error *error)
 {
     static const char *const names[] = {"traits.csv", "plants.csv", "run.json"};
     if (!open->folder) return PLM_OK;
     const double begin = plm_seconds_now();
-    plm_status status = PLM_OK;
+    plm_status status = begin_record(open, error);
     for (size_t i = 0; i < COUNT(names) && status == PLM_OK; i++) {
         char path[LONGEST_PATH];
         status = join(path, sizeof path, open->folder, names[i], "", error);

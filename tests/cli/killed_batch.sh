@@ -14,3 +14,12 @@ measure killed
 echo "exit code $?"
 cmp whole/traits.csv killed/traits.csv && cmp whole/plants.csv killed/plants.csv && cmp whole/plant5.png killed/plant5.png &&
     echo 'the tables and a picture are those of a whole batch'
+# Killed between its first tables and its record, as a table that cannot be written ends it there.
+mkdir -p cut/plants.csv/in_the_way
+measure cut 2>/dev/null
+echo "exit code $?"
+ls cut/traits.csv
+rm -r cut/plants.csv
+measure cut
+echo "exit code $?"
+cmp whole/traits.csv cut/traits.csv && cmp whole/plants.csv cut/plants.csv && echo 'the same tables'
