@@ -222,6 +222,14 @@ static double tube_count(const work *w, size_t first)
     return count ? plm_quantile(w->value, count, 0.5) : 0;
 }
 
+bool plm_leaf_is_full(const plm_leaf_way *way, size_t begin, size_t end)
+{
+    const double run = (double)(end - begin);
+    double points = 0;
+    for (size_t k = begin; k < end; k++) points += way->station[k].count;
+    return run >= LONG_RUN * WINDOW || points >= FULL * way->tube_points * run;
+}
+
 /* Share of the leaf's points beyond a station. */
 static double share_beyond(const plm_leaf_way *way, size_t station)
 {
@@ -232,16 +240,15 @@ static double share_beyond(const plm_leaf_way *way, size_t station)
 
 /* Whether the narrow stations [begin, split) are rachis: a stretch as long as a window that is long or as full as a tube.
  * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf. */
-static bool is_rachis(const work *w, size_t begin, size_t split, double typical)
+static bool is_rachis(const work *w, size_t begin, size_t split)
 {
     const plm_leaf_way *way = &w->way;
     const double run = (double)(split - begin);
-    double points = 0, tubes = 0;
+    double tubes = 0;
     size_t clear = 0;
-    for (size_t k = begin; k < split; k++)
-        points += way->station[k].count, tubes += way->station[k].tube, clear += w->clear[k];
+    for (size_t k = begin; k < split; k++) tubes += way->station[k].tube, clear += w->clear[k];
     if (clear >= CLEAR) return share_beyond(way, split) > LEAST_CLEAR;
-    if (run < WINDOW || (run < LONG_RUN * WINDOW && points < FULL * typical * run)) return false;
+    if (run < WINDOW || !plm_leaf_is_full(way, begin, split)) return false;
     if (tubes > TUBE_SHARE * run) return true;
     return share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
 }
@@ -251,7 +258,7 @@ static bool is_rachis(const work *w, size_t begin, size_t split, double typical)
 static size_t last_split(const work *w, size_t first)
 {
     const plm_leaf_way *way = &w->way;
-    const double limit = plm_leaf_wide(way), typical = tube_count(w, first);
+    const double limit = plm_leaf_wide(way);
     size_t k = way->station_count;
     while (k > first && (w->clear[k - 1] || way->station[k - 1].width < BLADE * way->tube)) k--;
     while (k > first) {
@@ -261,7 +268,7 @@ static size_t last_split(const work *w, size_t first)
         }
         const size_t split = k;
         while (k > first && way->station[k - 1].width <= limit) k--;
-        if (is_rachis(w, k, split, typical)) return split;
+        if (is_rachis(w, k, split)) return split;
     }
     return first;
 }
@@ -332,9 +339,9 @@ static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3]
                  wanted = (size_t)(FOOT_LINE * way->sketch->scale.radius / way->step);
     plm_line_sums sums = {0};
     size_t narrow = 0, k = 0;
-    for (; k < end && narrow < (size_t)WINDOW; k++)
+    for (; k < end && (narrow < (size_t)WINDOW || !plm_leaf_is_full(way, k - narrow, k)); k++)
         narrow = way->station[k].count > 1 && way->station[k].width < plm_leaf_wide(way) ? narrow + 1 : 0;
-    if (narrow < (size_t)WINDOW) return false;
+    if (narrow < (size_t)WINDOW || !plm_leaf_is_full(way, k - narrow, k)) return false;
     const size_t first = k - narrow;
     *begin = (double)first * way->step;
     for (k = first; k < end && k < first + wanted; k++) {
@@ -417,6 +424,7 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
     if (way->station_count >= w->first + FEWEST_STATIONS) {
         measure_stations(w);
         way->tube = tube_width(w, w->first);
+        way->tube_points = tube_count(w, w->first);
         if (s->habit == PLM_HABIT_ROSETTE) way->tube = fmin(way->tube, narrow_width(w));
         if (way->tube > 0) return status;
     }

@@ -30,8 +30,9 @@ typedef struct plm_leaf_way {
     size_t station_count;
     plm_station *station;
     double step, window;
-    double tube;     /**< typical width of the tube's stations */
-    double junction; /**< distance at which the width begins to grow */
+    double tube;        /**< typical width of the tube's stations */
+    double tube_points; /**< typical number of their points; 0 where there are none */
+    double junction;    /**< distance at which the width begins to grow */
 } plm_leaf_way;
 
 /** The station nearest to a distance, or the last before it that has points. */
@@ -42,6 +43,10 @@ plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_er
 
 /** Width from which on a station is wider than the tube: 1.6 widths of it. */
 double plm_leaf_wide(const plm_leaf_way *way);
+
+/** Whether the narrow stations [begin, end) are a stretch of the tube: as full as one, or so long that their few points do
+ * not matter. A strand of some points between stem and foot is neither. */
+bool plm_leaf_is_full(const plm_leaf_way *way, size_t begin, size_t end);
 
 /** The station of count points. */
 void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station);

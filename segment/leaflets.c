@@ -142,8 +142,10 @@ static double find_rachis(work *w)
     const plm_leaf_way *way = w->way;
     const size_t junction = (size_t)(way->junction / way->step) + RUN;
     const size_t last = junction < way->station_count ? junction : way->station_count;
-    size_t begin, end, next_begin, next_end;
-    if (!next_run(way, 0, last, &begin, &end)) return INFINITY;
+    size_t begin, end = 0, next_begin, next_end;
+    do {
+        if (!next_run(way, end, last, &begin, &end)) return INFINITY;
+    } while (!plm_leaf_is_full(way, begin, end));
     const double clear = (double)begin * way->step;
     take_run(w, begin, end);
     for (; next_run(way, end, last, &next_begin, &next_end); begin = next_begin, end = next_end) {

@@ -128,6 +128,7 @@ static void walk_rachis(plm_sketch *sketch, double cell, plm_leaf_way *way)
                           .step = 1e-3,
                           .window = 3e-3,
                           .tube = 0.7e-3,
+                          .tube_points = 12,
                           .junction = 58e-3};
 }
 
@@ -214,6 +215,33 @@ static void leaflets_that_widen_at_once_begin_at_the_rachis(void **unused)
     assert_ok(plm_leaf_leaflets(&sketch, &way, &error));
     for (size_t i = 0; i < sketch.working.count; i++)
         if (xyz[i][1] > 3e-3F) assert_false(is_tube[i]); /* as wide as the rachis at 5 mm */
+    plm_graph_free(&sketch.graph);
+}
+
+/* A stump of the stem beside the foot, and a strand of some points before it: the strand is no stretch of the rachis that the
+ * stump would hang on. */
+static void a_stump_at_the_foot_is_no_leaflet(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_leaf_way way;
+    plm_sketch sketch = empty_sketch(1);
+    for (int k = 0; k < STEPS; k++) {
+        const int count = k < 3 ? 2 : 12;
+        for (int i = 0; i < count; i++) add(&sketch, 1e-3 * k, 1e-3 * cos(i), 1e-3 * sin(i), false, true, 0);
+        station[k] = (plm_station){.width = k < 3 || k >= 10 ? 0.7e-3 : 4e-3, .middle = {1e-3 * k}, .count = 12};
+        if (k < 3) station[k].count = 2;
+    }
+    for (int i = 0; i < 14; i++)
+        for (int j = 0; j < 13; j++)
+            for (int side = -1; side <= 1; side += 2)
+                add(&sketch, 0.003 + 5e-4 * j, side * (1.5e-3 + 5e-4 * i), 0, false, true, 0);
+    walk_rachis(&sketch, 5e-4, &way);
+    for (size_t i = 0; i < sketch.working.count; i++)
+        if (!is_rachis(i)) distance[i] = 0.002F + fabsf(xyz[i][1]);
+    qsort(order, sketch.working.count, sizeof *order, by_distance);
+    assert_ok(plm_leaf_leaflets(&sketch, &way, &error));
+    for (size_t i = 0; i < sketch.working.count; i++) assert_true(is_tube[i]);
     plm_graph_free(&sketch.graph);
 }
 
@@ -333,6 +361,7 @@ int main(void)
         cmocka_unit_test(the_rachis_goes_on_among_leaflets),
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
         cmocka_unit_test(leaflets_that_widen_at_once_begin_at_the_rachis),
+        cmocka_unit_test(a_stump_at_the_foot_is_no_leaflet),
         cmocka_unit_test(rachises_of_virtual_plants_are_found),
         cmocka_unit_test(a_virtual_tomato_of_thick_rachises_is_compound),
         cmocka_unit_test(leaflets_of_virtual_plants_are_found_in_noise),
