@@ -48,6 +48,15 @@ static double begin_of(const plm_foot *p, float *value)
     return (double)value[k];
 }
 
+/* Whether a point called stem may be a petiole's. On a compound plant what lies off the stem's line is a tube without a leaf: small
+ * leaflets that noise makes thick. */
+static bool may_be_petiole(const plm_foot *p, const float xyz[3])
+{
+    plm_stem_place place;
+    return p->out->habit != PLM_HABIT_COMPOUND ||
+           plm_stem_nearest(p->path, xyz, &place) < p->scale->stem_radius + CLEAR * p->blur;
+}
+
 static void relabel(const plm_foot *p, double begin)
 {
     for (size_t i = 0; i < p->count; i++) {
@@ -59,6 +68,7 @@ static void relabel(const plm_foot *p, double begin)
         const double off = plm_tube_distance(&p->tube[1], p->xyz[p->point[i]], &s) - p->tube[1].radius;
         if (likeliest && (off > CLEAR * p->blur || s < begin)) continue;
         const bool is_petiole = likeliest > 0;
+        if (is_petiole && p->out->label[at] == PLM_LABEL_STEM && !may_be_petiole(p, p->xyz[p->point[i]])) continue;
         p->out->label[at] = is_petiole ? PLM_LABEL_PETIOLE : PLM_LABEL_STEM;
         p->out->organ[at] = is_petiole ? p->leaf[0] : 0;
     }

@@ -159,7 +159,8 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
                                   plm_segmentation *out, plm_error *error)
 {
     plm_status status = PLM_OK;
-    if (sketch->habit == PLM_HABIT_SIMPLE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
+    if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
+    if (sketch->habit == PLM_HABIT_COMPOUND) return status;
     if (status == PLM_OK) status = find_gathering(xyz, count, &sketch->scale.gathering, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
     return status;
@@ -203,7 +204,7 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     const bool heads = may_be_head(options->habit, &sketch);
     if (heads) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && heads) status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
-    const bool has_petioles = sketch.habit == PLM_HABIT_SIMPLE || sketch.habit == PLM_HABIT_ROSETTE;
+    const bool has_petioles = sketch.habit == PLM_HABIT_SIMPLE || sketch.habit == PLM_HABIT_ROSETTE || sketch.habit == PLM_HABIT_COMPOUND;
     if (status == PLM_OK && has_petioles && sketch.scale.has_tubes)
         status = refine_petioles((const float(*)[3])xyz, row, count, &sketch, &out, error);
     if (status != PLM_OK) goto done;

@@ -205,8 +205,10 @@ static void forget_low_stem(plm_sketch *sketch)
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
-    bool again = true;
-    plm_status status = PLM_OK;
+    bool again, forked;
+    plm_status status = plm_stem_leave_thin(sketch, INTERNODE_LEAST * sketch->scale.radius, &forked, error);
+    if (status == PLM_OK && forked) plm_sketch_mark_stem(sketch);
+    again = true;
     for (int round = 0; round < ROUNDS && again && status == PLM_OK; round++) {
         stem_top top;
         status = find_top(sketch, &top, error);

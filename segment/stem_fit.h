@@ -47,4 +47,8 @@ size_t plm_stem_kink(const plm_stem_path *stem, double from);
  * only where that is at least so long (metres), which *done says. PLM_E_MEMORY. */
 plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bool *done, plm_error *error);
 
+/** The same at the lowest fork at which the way turned into the thinner branch, where the other goes straight on: a way through
+ * a petiole and its leaflets, which noise makes thick, may be longer than that through the rest of the stem. */
+plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm_error *error);
+
 #endif

@@ -13,7 +13,18 @@ static const double PLATEAU = 0.95;          /* of the largest turn: as large */
 static const double AROUND = 1.3;            /* points within so many radii (plus noise) of a straight line are on it */
 static const double PRESENT = 0.3;           /* of the points that the stem has on such a length: it goes on */
 static const double PULL = 0.3, TURN = 0.15; /* how far a step follows the points, and the direction the steps */
-enum { ARM = 6, RISING = 4, BELOW = 8, SKIPPED = 2, MISSED = 2, MOST_STEPS = 2000 };
+static const double THINNER = 0.75;          /* radius beyond a kink over that below: the way has left the stem, ... */
+static const double THICKER = 1.15;          /* ... where the tube straight on is so much thicker than the way's */
+enum {
+    ARM = 6,
+    RISING = 4,
+    BELOW = 8,
+    SKIPPED = 2,
+    MISSED = 2,
+    MOST_STEPS = 2000,
+    FORKED = 6,   /* nodes from a fork on which its branches lie apart, */
+    COMPARED = 12 /* and those by which they are compared */
+};
 
 /* Direction of the path over ARM nodes from n on, up (step 1) or down (-1), pointing up. */
 static void direction(const plm_stem_path *stem, size_t n, int step, double out[3])
@@ -116,38 +127,111 @@ static size_t follow(const plm_sketch *sketch, size_t from, const plm_stem_path 
     return count - missed;
 }
 
-plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bool *done, plm_error *error)
+/* The path that leaves a kink straight on, as long as tube points lie along it. Gives that length. */
+static plm_status go_straight(const plm_sketch *sketch, size_t kink, plm_stem_path *straight, double *length,
+                              plm_error *error)
 {
-    *done = false;
-    plm_stem_path *stem = &sketch->stem;
+    const plm_stem_path *stem = &sketch->stem, petiole = rest_of(stem, kink);
     const size_t from = kink > SKIPPED ? kink - SKIPPED : 0; /* smoothing has rounded the kink off */
     const double step = stem->along[from + 1] - stem->along[from], radius = stem->radius[from];
     const size_t most = from + 1 + MOST_STEPS;
-    plm_stem_path longer = {.node = plm_alloc(most, sizeof *longer.node, error),
-                            .radius = plm_alloc(most, sizeof *longer.radius, error),
-                            .along = plm_alloc(most, sizeof *longer.along, error)};
-    if (!longer.node || !longer.radius || !longer.along) {
-        plm_stem_path_free(&longer);
+    *straight = (plm_stem_path){.node = plm_alloc(most, sizeof *straight->node, error),
+                                .radius = plm_alloc(most, sizeof *straight->radius, error),
+                                .along = plm_alloc(most, sizeof *straight->along, error)};
+    if (!straight->node || !straight->radius || !straight->along) {
+        plm_stem_path_free(straight);
         return PLM_E_MEMORY;
     }
-    const plm_stem_path petiole = rest_of(stem, kink);
-    const size_t added = follow(sketch, from, &petiole, step, radius, longer.node + from + 1);
-    if ((double)added * step < least) {
-        plm_stem_path_free(&longer);
-        return PLM_OK;
-    }
-    *done = true;
-    longer.count = from + 1 + (added > SKIPPED ? added : SKIPPED);
-    memcpy(longer.node, stem->node, (from + 1) * sizeof *longer.node);
-    memcpy(longer.radius, stem->radius, (from + 1) * sizeof *longer.radius);
-    memcpy(longer.along, stem->along, (from + 1) * sizeof *longer.along);
-    for (size_t n = from + 1; n < longer.count; n++) {
+    const size_t added = follow(sketch, from, &petiole, step, radius, straight->node + from + 1);
+    *length = (double)added * step;
+    straight->count = from + 1 + (added > SKIPPED ? added : SKIPPED);
+    memcpy(straight->node, stem->node, (from + 1) * sizeof *straight->node);
+    memcpy(straight->radius, stem->radius, (from + 1) * sizeof *straight->radius);
+    memcpy(straight->along, stem->along, (from + 1) * sizeof *straight->along);
+    for (size_t n = from + 1; n < straight->count; n++) {
         double d[3];
-        for (int axis = 0; axis < 3; axis++) d[axis] = longer.node[n][axis] - longer.node[n - 1][axis];
-        longer.along[n] = longer.along[n - 1] + plm_norm(d);
-        longer.radius[n] = radius;
+        for (int axis = 0; axis < 3; axis++) d[axis] = straight->node[n][axis] - straight->node[n - 1][axis];
+        straight->along[n] = straight->along[n - 1] + plm_norm(d);
+        straight->radius[n] = radius;
     }
-    plm_stem_path_free(stem);
-    *stem = longer;
     return PLM_OK;
+}
+
+/* Typical radius of the balls of the tube points about the nodes [first, end) of a path; 0 where there are none. */
+static double typical_ball(const plm_sketch *sketch, const plm_stem_path *path, size_t first, size_t end, float *value)
+{
+    plm_stem_path part = rest_of(path, first);
+    part.count = end - first;
+    size_t count = 0;
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        plm_stem_place place;
+        if (!sketch->is_tube[i]) continue;
+        const double off = plm_stem_nearest(&part, sketch->working.xyz[i], &place);
+        if (off < AROUND * place.radius + sketch->scale.noise) value[count++] = sketch->point[i].radius;
+    }
+    return count ? plm_quantile(value, count, 0.5) : 0;
+}
+
+/* Whether the tube straight on from a kink is thicker than the one that the path turns into, where both have left the fork. */
+static plm_status is_thicker(const plm_sketch *sketch, size_t kink, const plm_stem_path *straight, bool *answer,
+                             plm_error *error)
+{
+    const plm_stem_path *stem = &sketch->stem;
+    float *value = plm_alloc(sketch->working.count, sizeof *value, error);
+    if (!value) return PLM_E_MEMORY;
+    const size_t first = kink + FORKED, last = straight->count < stem->count ? straight->count : stem->count;
+    const size_t end = last < first + COMPARED ? last : first + COMPARED;
+    *answer = first + 1 < end && typical_ball(sketch, straight, first, end, value) >
+                                     THICKER * typical_ball(sketch, stem, first, end, value);
+    plm_free(value);
+    return PLM_OK;
+}
+
+static plm_status take_straight(plm_sketch *sketch, size_t kink, double least, bool if_thicker, bool *done,
+                                plm_error *error)
+{
+    plm_stem_path straight;
+    double length;
+    *done = false;
+    plm_status status = go_straight(sketch, kink, &straight, &length, error);
+    if (status != PLM_OK) return status;
+    bool taken = length >= least;
+    if (taken && if_thicker) status = is_thicker(sketch, kink, &straight, &taken, error);
+    if (status == PLM_OK && taken) {
+        const plm_stem_path old = sketch->stem;
+        sketch->stem = straight;
+        straight = old;
+        *done = true;
+    }
+    plm_stem_path_free(&straight);
+    return status;
+}
+
+plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bool *done, plm_error *error)
+{
+    return take_straight(sketch, kink, least, false, done, error);
+}
+
+/* Typical radius of the nodes [first, end) of the path. */
+static double mean_radius(const plm_stem_path *stem, size_t first, size_t end)
+{
+    double sum = 0;
+    for (size_t n = first; n < end; n++) sum += stem->radius[n];
+    return sum / (double)(end - first);
+}
+
+plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm_error *error)
+{
+    *done = false;
+    plm_status status = PLM_OK;
+    for (size_t n = FORKED + COMPARED; n + FORKED + ARM < sketch->stem.count && !*done && status == PLM_OK; n++) {
+        const plm_stem_path *stem = &sketch->stem;
+        const double turn = plm_stem_turn(stem, n);
+        if (turn < KINK || turn < plm_stem_turn(stem, n - 1) || turn < plm_stem_turn(stem, n + 1)) continue;
+        const size_t end = n + FORKED + COMPARED < stem->count ? n + FORKED + COMPARED : stem->count;
+        if (mean_radius(stem, n + FORKED, end) > THINNER * mean_radius(stem, n - FORKED - COMPARED, n - FORKED))
+            continue;
+        status = take_straight(sketch, n, least, true, done, error);
+    }
+    return status;
 }

@@ -176,6 +176,34 @@ static void a_petiole_begins_at_the_stem(void **unused)
     }
 }
 
+/* On compound plants small leaflets that noise makes thick are tubes without a leaf, and those are called stem: beyond the way
+ * they are not the petiole's, though they lie on its line. On simple ones they are what the way has missed. */
+static void tubes_off_the_way_are_no_petiole_of_a_compound_plant(void **unused)
+{
+    (void)unused;
+    for (int compound = 0; compound < 2; compound++) {
+        known_node k;
+        const shoot p = {0, 0.055, 0.55};
+        make_node(&k, &p, 4e-4);
+        for (int i = 0; i <= 58; i++) add_node(&k, (const double[3]){0, 0, 1e-3 * i});
+        label_by_way(&k, 7e-4);
+        double end[3];
+        petiole_at(&p, 0.016, end);
+        size_t off = 0, taken = 0;
+        for (size_t i = 0; i < k.count; i++)
+            if (k.truth[i] == PLM_LABEL_PETIOLE && (double)k.xyz[i][2] > end[2]) k.label[i] = PLM_LABEL_STEM, off++;
+        k.found.habit = compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
+        find_feet(&k);
+        for (size_t i = 0; i < k.count; i++)
+            taken += k.truth[i] == PLM_LABEL_PETIOLE && (double)k.xyz[i][2] > end[2] && k.label[i] == PLM_LABEL_PETIOLE;
+        assert_true(off > 40);
+        if (compound)
+            assert_int_equal(taken, 0);
+        else
+            assert_true(taken > off / 2);
+    }
+}
+
 /* What cannot be told apart stays as it is: by too short a way, and by too few points. */
 static void labels_stay_where_nothing_tells(void **unused)
 {
@@ -203,6 +231,7 @@ int main(void)
         cmocka_unit_test(a_way_into_the_topmost_petiole_is_left),
         cmocka_unit_test(a_petiole_along_the_stem_is_told_by_where_it_begins),
         cmocka_unit_test(a_petiole_begins_at_the_stem),
+        cmocka_unit_test(tubes_off_the_way_are_no_petiole_of_a_compound_plant),
         cmocka_unit_test(labels_stay_where_nothing_tells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

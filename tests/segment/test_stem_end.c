@@ -1,9 +1,14 @@
-/* The way up the stem that ran on into a petiole with leaflets leaves it again at the turn, though the leaflets stand on it like
- * leaves without petioles of their own. */
+/* The way up the stem that ran on into a petiole leaves it again: at a turn before leaflets that stand on it like leaves without
+ * petioles of their own, and at a fork whose other branch is thicker. */
 #include "support/test.h"
 
+#include "cloud/linear.h"
+#include "segment/stem_fit.h"
 #include "support/label_score.h"
 #include "support/virtual_plant.h"
+
+#include <math.h>
+#include <string.h>
 
 static void leaflets_at_the_end_of_the_way_are_no_leaves(void **unused)
 {
@@ -24,8 +29,88 @@ static void leaflets_at_the_end_of_the_way_are_no_leaves(void **unused)
     virtual_plant_free(&made);
 }
 
+enum { MOST = 6000, NODES = 200 };
+
+/* A stem of radius 2 mm up to a fork at 60 mm; one branch goes straight on, the other leaves it by 0.4 radians; 60 mm each. */
+typedef struct fork {
+    float xyz[MOST][3];
+    plm_tube_point point[MOST];
+    bool is_tube[MOST];
+    plm_sketch sketch;
+} fork;
+
+static void add_tube(fork *f, const double from[3], const double along[3], double length, double radius)
+{
+    double u[3], v[3];
+    plm_frame_of_axis(along, u, v);
+    for (double s = 0; s < length; s += 5e-4)
+        for (int i = 0; i < 12; i++) {
+            const size_t k = f->sketch.working.count++;
+            const double turn = 2 * PLM_PI * (i + 0.5 * (double)(k / 12 % 2)) / 12;
+            assert_true(k < MOST);
+            for (int a = 0; a < 3; a++)
+                f->xyz[k][a] = (float)(from[a] + s * along[a] + radius * (cos(turn) * u[a] + sin(turn) * v[a]));
+            f->is_tube[k] = true;
+            f->point[k].radius = (float)radius;
+        }
+}
+
+static void add_nodes(plm_stem_path *stem, const double from[3], const double along[3], double length, double radius)
+{
+    for (double s = 0; s < length; s += 1e-3) {
+        for (int a = 0; a < 3; a++) stem->node[stem->count][a] = from[a] + s * along[a];
+        stem->radius[stem->count++] = radius;
+    }
+    plm_stem_measure_along(stem);
+}
+
+/* Radii of the branches; the way goes up the one that leaves the line. Gives how far beside the line the way ends. */
+static double leave_fork(double straight, double aside, bool *done)
+{
+    static fork f;
+    static const double base[3] = {0, 0, 0}, up[3] = {0, 0, 1}, node[3] = {0, 0, 0.06};
+    const double out[3] = {sin(0.4), 0, cos(0.4)};
+    plm_error error = {0};
+    memset(&f, 0, sizeof f);
+    f.sketch.working.xyz = f.xyz;
+    f.sketch.point = f.point;
+    f.sketch.is_tube = f.is_tube;
+    f.sketch.scale = (plm_scale){.radius = 4e-3, .stem_radius = 2e-3, .noise = 2e-4};
+    plm_stem_path *stem = &f.sketch.stem;
+    stem->node = plm_alloc(NODES, sizeof *stem->node, &error);
+    stem->radius = plm_alloc(NODES, sizeof *stem->radius, &error);
+    stem->along = plm_alloc(NODES, sizeof *stem->along, &error);
+    assert_true(stem->node && stem->radius && stem->along);
+    add_tube(&f, base, up, 0.06, 2e-3);
+    add_tube(&f, node, up, straight > 0 ? 0.06 : 0, straight);
+    add_tube(&f, node, out, 0.06, aside);
+    add_nodes(stem, base, up, 0.06, 2e-3);
+    add_nodes(stem, node, out, 0.06, aside);
+    assert_ok(plm_stem_leave_thin(&f.sketch, 8e-3, done, &error));
+    const double beside = stem->node[stem->count - 1][0];
+    plm_stem_path_free(stem);
+    return beside;
+}
+
+static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
+{
+    (void)unused;
+    bool done;
+    assert_true(fabs(leave_fork(1.9e-3, 1.1e-3, &done)) < 1e-3);
+    assert_true(done);
+    assert_true(leave_fork(1.1e-3, 1.9e-3, &done) > 0.02); /* the stem turns there, and a petiole goes on */
+    assert_false(done);
+    assert_true(leave_fork(1.1e-3, 1.1e-3, &done) > 0.02); /* nothing tells */
+    assert_false(done);
+    assert_true(leave_fork(0, 1.1e-3, &done) > 0.02); /* a stem that thins has no other branch */
+    assert_false(done);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(leaflets_at_the_end_of_the_way_are_no_leaves)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(leaflets_at_the_end_of_the_way_are_no_leaves),
+        cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
