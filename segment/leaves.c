@@ -36,6 +36,10 @@ static const double MANY_BLADES = 1.55, STRAP_OF_MANY = 0.65;
  * no tear; without them more is asked for. */
 static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
 
+/* Of a length of leaflet over one of rachis: a leaflet that touches another leaf's is nearer to that one's foot, but its own rachis
+ * leads to it without crossing another leaflet. */
+static const double LEAFLET_COST = 2;
+
 /* How much a leaf looks like a strap: by its feet as thick as the stem, and where slimmer ones count as well. */
 static void strap_evidence(const plm_sketch *sketch, const plm_side_group *group, double *thick, double *slim)
 {
@@ -254,7 +258,7 @@ static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error)
 {
     plm_side_groups groups = {0};
-    plm_status status = plm_side_groups_find(sketch, &groups, error);
+    plm_status status = plm_side_groups_find(sketch, 1, &groups, error);
     if (status == PLM_OK && sketch->scale.has_tubes && !sketch->stem.count) {
         status = plm_side_groups_split(sketch, &groups, error);
         if (status == PLM_OK) status = plm_side_groups_young(sketch, &groups, error);
@@ -264,6 +268,10 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
         /* Where the stem's line ended early, its rest is one foot of several petioles. */
         if (sketch->habit == PLM_HABIT_SIMPLE && sketch->stem.count)
             status = plm_side_groups_split(sketch, &groups, error);
+        if (sketch->habit == PLM_HABIT_COMPOUND && sketch->stem.count) {
+            plm_side_groups_free(&groups);
+            status = plm_side_groups_find(sketch, LEAFLET_COST, &groups, error);
+        }
     }
     if (status == PLM_OK) {
         if (sketch->habit == PLM_HABIT_BARE_STEM)

@@ -26,6 +26,8 @@ typedef struct work {
     int32_t *colour, *component, *origin;
     uint32_t *stack, *source;
     float *distance, *value;
+    double blade_cost;
+    float *weight; /* of each point on a way to a foot */
 } work;
 
 double plm_blade_least(const plm_sketch *sketch)
@@ -43,10 +45,10 @@ void plm_side_groups_free(plm_side_groups *groups)
     *groups = (plm_side_groups){0};
 }
 
-static plm_status start(work *w, plm_sketch *sketch, plm_side_groups *out, plm_error *error)
+static plm_status start(work *w, plm_sketch *sketch, double blade_cost, plm_side_groups *out, plm_error *error)
 {
     const size_t count = sketch->working.count;
-    *w = (work){.sketch = sketch, .out = out, .scratch = {.error = error}};
+    *w = (work){.sketch = sketch, .out = out, .scratch = {.error = error}, .blade_cost = blade_cost};
     w->trunk = plm_scratch_take(&w->scratch, count, sizeof *w->trunk);
     w->allowed = plm_scratch_take(&w->scratch, count, sizeof *w->allowed);
     w->colour = plm_scratch_take(&w->scratch, count, sizeof *w->colour);
@@ -56,6 +58,7 @@ static plm_status start(work *w, plm_sketch *sketch, plm_side_groups *out, plm_e
     w->source = plm_scratch_take(&w->scratch, count, sizeof *w->source);
     w->distance = plm_scratch_take(&w->scratch, count, sizeof *w->distance);
     w->value = plm_scratch_take(&w->scratch, count, sizeof *w->value);
+    w->weight = plm_scratch_take(&w->scratch, count, sizeof *w->weight);
     out->distance = plm_alloc(count, sizeof *out->distance, error);
     out->blade = plm_alloc(count, sizeof *out->blade, error);
     return w->scratch.failed || !out->distance || !out->blade ? PLM_E_MEMORY : PLM_OK;
@@ -84,10 +87,15 @@ static plm_status find_trunk(work *w, plm_error *error)
 
 /* ---- Feet ----------------------------------------------------------------------------------------------------- */
 
-static plm_status walk_from(work *w, size_t sources, float *distance, plm_error *error)
+/* weight: of each point, or NULL. */
+static plm_status walk_from(work *w, size_t sources, const float *weight, float *distance, plm_error *error)
 {
-    const plm_walk walk = {
-        .source = w->source, .source_count = sources, .allowed = w->allowed, .distance = distance, .origin = w->origin};
+    const plm_walk walk = {.source = w->source,
+                           .source_count = sources,
+                           .weight = weight,
+                           .allowed = w->allowed,
+                           .distance = distance,
+                           .origin = w->origin};
     return plm_graph_walk(&w->sketch->graph, &walk, error);
 }
 
@@ -102,7 +110,7 @@ static plm_status find_feet(work *w, size_t *feet, plm_error *error)
         w->allowed[i] = true;
         if (w->trunk[i]) w->source[sources++] = i;
     }
-    const plm_status status = walk_from(w, sources, w->out->distance, error);
+    const plm_status status = walk_from(w, sources, NULL, w->out->distance, error);
     if (status != PLM_OK) return status;
     for (size_t i = 0; i < count; i++) {
         const float d = w->out->distance[i];
@@ -123,7 +131,8 @@ static plm_status grow(work *w, const bool *alive, plm_error *error)
         w->allowed[i] = !w->trunk[i] && !(w->out->distance[i] < start);
         if (w->component[i] >= 0 && alive[w->component[i]]) w->source[sources++] = i;
     }
-    plm_status status = walk_from(w, sources, w->distance, error);
+    for (size_t i = 0; i < count; i++) w->weight[i] = s->is_tube[i] ? 1 : (float)w->blade_cost;
+    plm_status status = walk_from(w, sources, w->weight, w->distance, error);
     if (status != PLM_OK) return status;
     for (size_t i = 0; i < count; i++) s->group[i] = w->origin[i] < 0 ? -1 : w->component[w->source[w->origin[i]]];
     sources = 0;
@@ -133,7 +142,7 @@ static plm_status grow(work *w, const bool *alive, plm_error *error)
     }
     /* A rosette's core belongs to the petioles that meet there. */
     for (uint32_t i = 0; !s->stem.count && i < count; i++) w->allowed[i] = true;
-    status = walk_from(w, sources, w->distance, error);
+    status = walk_from(w, sources, NULL, w->distance, error);
     for (size_t i = 0; status == PLM_OK && i < count; i++)
         if (s->group[i] < 0 && w->origin[i] >= 0) s->group[i] = s->group[w->source[w->origin[i]]];
     return status;
@@ -275,11 +284,11 @@ static plm_status find_groups(work *w, plm_error *error)
     return status == PLM_OK ? find_blades(w, error) : status;
 }
 
-plm_status plm_side_groups_find(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
+plm_status plm_side_groups_find(plm_sketch *sketch, double blade_cost, plm_side_groups *groups, plm_error *error)
 {
     work w;
     plm_side_groups out = {0};
-    plm_status status = start(&w, sketch, &out, error);
+    plm_status status = start(&w, sketch, blade_cost, &out, error);
     if (status == PLM_OK) status = find_groups(&w, error);
     if (status == PLM_OK)
         *groups = out;

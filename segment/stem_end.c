@@ -124,7 +124,7 @@ static plm_status find_top(plm_sketch *sketch, stem_top *top, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
     *top = (stem_top){.end = stem->along[stem->count - 1] - END_REACH * sketch->scale.radius};
-    plm_status status = plm_side_groups_find(sketch, &top->groups, error);
+    plm_status status = plm_side_groups_find(sketch, 1, &top->groups, error);
     if (status != PLM_OK) return status;
     float *value = plm_alloc(top->groups.count + 1, sizeof *value, error);
     if (!value) {

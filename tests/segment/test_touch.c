@@ -3,6 +3,7 @@
 #include "support/test.h"
 
 #include "segment/forked_feet.h"
+#include "segment/side_groups.h"
 #include "segment/touch_cut.h"
 #include "support/label_score.h"
 #include "support/virtual_plant.h"
@@ -150,6 +151,50 @@ static void a_torn_petiole_is_one(void **unused)
     plm_graph_free(&sketch.graph);
 }
 
+/* The end of a blade on a short petiole touches the leaflet at the end of a long rachis, to which it is the shorter way: blade is as
+ * long a way as tube where nothing is known, and twice as long on plants of compound leaves. */
+static void a_leaflet_belongs_to_the_rachis_that_leads_to_it(void **unused)
+{
+    (void)unused;
+    for (int cost = 1; cost <= 2; cost++) {
+        static plm_tube_point point[ROWS];
+        plm_error error = {0};
+        plm_side_groups groups;
+        plm_sketch sketch = empty_sketch();
+        double node[2][3] = {{-1e-3, -5e-3, 0}, {-1e-3, 15e-3, 0}}, radius[2] = {1e-3, 1e-3}, along[2] = {0, 20e-3};
+        sketch.stem = (plm_stem_path){.count = 2, .node = node, .radius = radius, .along = along};
+        sketch.scale.has_tubes = true;
+        sketch.point = point;
+        for (int k = -4; k < 0; k++)
+            for (int j = -10; j <= 30; j++) add(&sketch, k * STEP, j * STEP, 0, true, -1);
+        for (size_t i = 0; i < sketch.working.count; i++) is_stem[i] = true;
+        for (int k = 0; k < 96; k++) { /* the rachis makes a detour */
+            const double x = 24e-3 * k / 96, y = x < 12e-3 ? -x : x - 24e-3;
+            for (int j = -1; j <= 1; j++) add(&sketch, x, y + j * STEP, 0, true, 0);
+        }
+        for (int k = 0; k < 10; k++)
+            for (int j = -5; j < 5; j++) add(&sketch, 24e-3 + k * STEP, j * STEP, 0, false, 0);
+        add_leaf(&sketch, 9.5e-3, 0, 6e-3, 13e-3, 1);
+        for (int k = 0; k < 10; k++)
+            for (int j = 0; j < 3; j++) add(&sketch, 19e-3 + k * STEP, 3e-3 + j * STEP, 0, false, 1); /* its lobe */
+        for (int k = 0; k < 4; k++)
+            for (int j = 0; j < 3; j++) add(&sketch, 24e-3 + k * STEP, 3e-3 + j * STEP, 0, false, 1);
+        for (size_t i = 0; i < sketch.working.count; i++) point[i].radius = 5e-4F;
+        link_all(&sketch);
+        assert_ok(plm_side_groups_find(&sketch, cost, &groups, &error));
+        size_t away = 0, all = 0;
+        int32_t foot = -1;
+        for (size_t i = 0; i < sketch.working.count; i++)
+            if (truth[i] == 0 && xyz[i][0] > 5e-3F && xyz[i][0] < 6e-3F) foot = group[i];
+        for (size_t i = 0; i < sketch.working.count; i++)
+            if (truth[i] == 0 && !is_tube[i]) all++, away += group[i] != foot;
+        print_message("cost %d: %zu of the leaflet's %zu points with another rachis\n", cost, away, all);
+        assert_true(cost == 1 ? away > all / 2 : away < all / 20);
+        plm_side_groups_free(&groups);
+        plm_graph_free(&sketch.graph);
+    }
+}
+
 /* Depth cameras see leaves of this rosette touch: F1 was 0.71. */
 static void touching_leaves_of_a_virtual_rosette_are_found(void **unused)
 {
@@ -174,6 +219,7 @@ int main(void)
         cmocka_unit_test(a_border_without_a_touch_stays),
         cmocka_unit_test(petioles_of_one_foot_are_told_apart),
         cmocka_unit_test(a_torn_petiole_is_one),
+        cmocka_unit_test(a_leaflet_belongs_to_the_rachis_that_leads_to_it),
         cmocka_unit_test(touching_leaves_of_a_virtual_rosette_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
