@@ -23,6 +23,7 @@ static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this lengt
  * the narrow stretch before it is shorter than so many windows. */
 static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 static const double LEAST_CLEAR = 0.15; /* the same where nothing but a tube lies about the line */
+static const double FILLED = 0.4;       /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
 static const double BLADE = 2;          /* widths of the tube that the last leaflet reaches at least */
 static const double NEAR = 3.2;         /* points within so many widths of a tube station's middle are of the tube */
 static const double NEAR_CLEAR = 2.2;   /* the same where leaflets may lie beside it */
@@ -222,12 +223,17 @@ static double tube_count(const work *w, size_t first)
     return count ? plm_quantile(w->value, count, 0.5) : 0;
 }
 
+static double run_points(const plm_leaf_way *way, size_t begin, size_t end)
+{
+    double points = 0;
+    for (size_t k = begin; k < end; k++) points += way->station[k].count;
+    return points;
+}
+
 bool plm_leaf_is_full(const plm_leaf_way *way, size_t begin, size_t end)
 {
     const double run = (double)(end - begin);
-    double points = 0;
-    for (size_t k = begin; k < end; k++) points += way->station[k].count;
-    return run >= LONG_RUN * WINDOW || points >= FULL * way->tube_points * run;
+    return run >= LONG_RUN * WINDOW || run_points(way, begin, end) >= FULL * way->tube_points * run;
 }
 
 /* Share of the leaf's points beyond a station. */
@@ -247,10 +253,11 @@ static bool is_rachis(const work *w, size_t begin, size_t split)
     double tubes = 0;
     size_t clear = 0;
     for (size_t k = begin; k < split; k++) tubes += way->station[k].tube, clear += w->clear[k];
-    if (clear >= CLEAR) return share_beyond(way, split) > LEAST_CLEAR;
+    const bool filled = run_points(way, begin, split) >= FILLED * way->tube_points * run;
+    if (clear >= CLEAR && filled) return share_beyond(way, split) > LEAST_CLEAR;
     if (run < WINDOW || !plm_leaf_is_full(way, begin, split)) return false;
     if (tubes > TUBE_SHARE * run) return true;
-    return share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
+    return filled && share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
 }
 
 /* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first narrow

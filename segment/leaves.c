@@ -39,6 +39,9 @@ static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
 /* Of a length of leaflet over one of rachis: a leaflet that touches another leaf's is nearer to that one's foot, but its own rachis
  * leads to it without crossing another leaflet. */
 static const double LEAFLET_COST = 2;
+/* A blade on less than so much tube (in R), smaller than such a share of the leaf that stands on the stem so near (in R), is no
+ * leaf of a compound plant but a leaflet: leaves have petioles. */
+static const double LEAFLET_TUBE = 0.3, LEAFLET_AREA = 0.25, LEAFLET_REACH = 2;
 
 /* How much a leaf looks like a strap: by its feet as thick as the stem, and where slimmer ones count as well. */
 static void strap_evidence(const plm_sketch *sketch, const plm_side_group *group, double *thick, double *slim)
@@ -212,6 +215,48 @@ static plm_status give_feet(plm_sketch *sketch, plm_error *error)
     return status;
 }
 
+/* The group whose leaf a small blade without a petiole is a leaflet of: of those about its place on the stem that have a
+ * petiole and a far larger blade the nearest; -1: none. */
+static int32_t leaf_of_leaflet(const plm_sketch *sketch, const plm_side_groups *groups, size_t leaflet)
+{
+    const double R = sketch->scale.radius;
+    const plm_side_group *own = &groups->group[leaflet];
+    int32_t best = -1;
+    double nearest = LEAFLET_REACH * R;
+    if (!own->has_foot || own->blades != 1 || own->tube_length > LEAFLET_TUBE * R) return -1;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        const double gap = fabs(group->along - own->along);
+        if (!group->has_foot || !group->blades || group->tube_length <= LEAFLET_TUBE * R || !(gap < nearest)) continue;
+        if (own->blade_area > LEAFLET_AREA * group->blade_area) continue;
+        nearest = gap;
+        best = (int32_t)g;
+    }
+    return best;
+}
+
+/* The lowest leaflets of a leaf may lie so near to the stem that they make feet of their own. */
+static plm_status join_leaflets(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
+{
+    int32_t *to = plm_alloc(groups->count + 1, sizeof *to, error);
+    if (!to) return PLM_E_MEMORY;
+    for (size_t g = 0; g < groups->count; g++) to[g] = leaf_of_leaflet(sketch, groups, g);
+    for (size_t b = 0; b < groups->blade_count; b++) {
+        int32_t *group = &groups->blade_group[b];
+        if (*group >= 0 && to[*group] >= 0) *group = to[*group];
+    }
+    for (size_t i = 0; i < sketch->working.count; i++)
+        if (sketch->group[i] >= 0 && to[sketch->group[i]] >= 0) sketch->group[i] = to[sketch->group[i]];
+    for (size_t g = 0; g < groups->count; g++) {
+        if (to[g] < 0) continue;
+        plm_side_group *host = &groups->group[to[g]], *own = &groups->group[g];
+        host->blades += own->blades, host->blade_area += own->blade_area, host->tube_length += own->tube_length;
+        own->blades = 0, own->blade_area = 0, own->tube_length = 0;
+    }
+    plm_free(to);
+    return PLM_OK;
+}
+
 /* One leaf a group that has a blade. */
 static plm_status leaves_of_groups(plm_sketch *sketch, const plm_side_groups *groups, plm_error *error)
 {
@@ -271,6 +316,7 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
         if (sketch->habit == PLM_HABIT_COMPOUND && sketch->stem.count) {
             plm_side_groups_free(&groups);
             status = plm_side_groups_find(sketch, LEAFLET_COST, &groups, error);
+            if (status == PLM_OK) status = join_leaflets(sketch, &groups, error);
         }
     }
     if (status == PLM_OK) {

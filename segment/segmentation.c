@@ -204,7 +204,8 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     const bool heads = may_be_head(options->habit, &sketch);
     if (heads) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && heads) status = plm_find_head((const float(*)[3])xyz, row, count, out.noise, &out, error);
-    const bool has_petioles = sketch.habit == PLM_HABIT_SIMPLE || sketch.habit == PLM_HABIT_ROSETTE || sketch.habit == PLM_HABIT_COMPOUND;
+    const bool has_petioles =
+        sketch.habit == PLM_HABIT_SIMPLE || sketch.habit == PLM_HABIT_ROSETTE || sketch.habit == PLM_HABIT_COMPOUND;
     if (status == PLM_OK && has_petioles && sketch.scale.has_tubes)
         status = refine_petioles((const float(*)[3])xyz, row, count, &sketch, &out, error);
     if (status != PLM_OK) goto done;

@@ -19,7 +19,9 @@ static const double CUT_BEYOND = 0.3; /* the cut is so far (in R) beyond the las
 static const double CUT_END = 1.25;   /* ... and so far before the path's end, where its direction is not known */
 static const double BEND = 0.35;      /* kinks (radians) and ... */
 static const double DROP = 0.25;      /* ... losses of radius that count as one unit of evidence */
-static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
+static const double EVIDENCE_LEAST = 0.8; /* less tells nothing: ... */
+static const double AS_THICK = 0.88;      /* ... then a stretch with so much of the radius that the path has ... */
+static const double THICK_BELOW = 6;      /* ... over so many R below is the stem's last internode */
 /* Of the size: a stem that rises less is none. 0.22 and more on stems, virtual and real, while ways along petioles of rosettes
  * in noise, cut where they thin, end at 0.1 or less. */
 static const double RISE_LEFT = 0.15;
@@ -52,8 +54,8 @@ static double mean_radius(const plm_stem_path *stem, size_t n, int step)
     return sum / count;
 }
 
-/* The node between two arc lengths at which the path turns and thins the most. */
-static size_t best_cut(const plm_stem_path *stem, double from, double to, double fallback)
+/* The node between two arc lengths at which the path turns and thins the most; told: enough to say that it leaves the stem there. */
+static size_t best_cut(const plm_stem_path *stem, double from, double to, double fallback, bool *told)
 {
     size_t best = 0;
     double most = EVIDENCE_LEAST;
@@ -67,7 +69,8 @@ static size_t best_cut(const plm_stem_path *stem, double from, double to, double
             best = n;
         }
     }
-    while (!best || (most == EVIDENCE_LEAST && best + 1 < stem->count && stem->along[best] < fallback)) best++;
+    *told = most > EVIDENCE_LEAST;
+    while (!best || (!*told && best + 1 < stem->count && stem->along[best] < fallback)) best++;
     return best;
 }
 
@@ -170,6 +173,19 @@ static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *d
     return status;
 }
 
+/* Whether the path is as thick between two arc lengths as below. */
+static bool is_as_thick(const plm_stem_path *stem, double from, double to, double below)
+{
+    double sum[2] = {0};
+    size_t count[2] = {0};
+    for (size_t n = 0; n < stem->count; n++) {
+        const double along = stem->along[n];
+        const int which = along > from && along < to ? 1 : along > from - below && along < from ? 0 : -1;
+        if (which >= 0) sum[which] += stem->radius[n], count[which]++;
+    }
+    return count[0] && count[1] && sum[1] / (double)count[1] > AS_THICK * sum[0] / (double)count[0];
+}
+
 /* Cuts the path before a last stretch without feet, where the leaf at its end lacks the petiole that the others have. */
 static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
 {
@@ -189,7 +205,10 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
         has_petiole |= group->along >= top->end && group->blades && !sessile;
     }
     if (!is_sessile || has_petiole || length - last <= BARE_LEAST * R) return;
-    stem->count = best_cut(stem, last, length - CUT_END * R, last + CUT_BEYOND * R) + 1;
+    bool told;
+    const size_t cut = best_cut(stem, last, length - CUT_END * R, last + CUT_BEYOND * R, &told);
+    if (!told && is_as_thick(stem, last, length - CUT_END * R, THICK_BELOW * R)) return;
+    stem->count = cut + 1;
     plm_sketch_mark_stem(sketch);
 }
 

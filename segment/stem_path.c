@@ -15,11 +15,13 @@ static const double THIN_LOSS = 2;            /* ... and a length of it takes of
 static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
 static const double FOOT_SHARE = 0.2;         /* of the path: the foot, which is bare */
 static const double RISE_LEAST = 0.2;         /* of the size: a plant that rises less has no stem */
-static const double STEP = 0.25;              /* nodes, in R */
-static const double WINDOW = 1;               /* half window of centring and of the radius, in R */
-static const double REACH = 2;                /* points within so many stem radii centre the path */
-static const double MARGIN = 1.1;             /* points within so many radii (plus sigma) are stem */
-static const double MARGIN_BLADE = 1.15;      /* the same for points that look like blade */
+static const double PIECE_SHARE = 0.2;        /* of the longest piece of tube: the base is on such a one, ... */
+static const double PIECE_LEAST = 2, PIECE_GAP = 2.5; /* ... or on an upright one of this length so far below, in R */
+static const double STEP = 0.25;                      /* nodes, in R */
+static const double WINDOW = 1;                       /* half window of centring and of the radius, in R */
+static const double REACH = 2;                        /* points within so many stem radii centre the path */
+static const double MARGIN = 1.1;                     /* points within so many radii (plus sigma) are stem */
+static const double MARGIN_BLADE = 1.15;              /* the same for points that look like blade */
 enum { CENTRING_ROUNDS = 3 };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */
@@ -69,7 +71,57 @@ static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, tube_ways *
     return status;
 }
 
-/* Thick tube points of tube components that are longer than thick: specks called tube shall not be the base. */
+/** A component of tube. */
+typedef struct tube_piece {
+    double length;
+    float low[3], high[3]; /* its lowest and highest thick points */
+    bool has_thick, is_candidate;
+} tube_piece;
+
+static void measure_pieces(const plm_sketch *sketch, const int32_t *component, tube_piece *piece)
+{
+    const double cell = sketch->working.cell;
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        if (component[i] < 0) continue;
+        const float *at = sketch->working.xyz[i];
+        tube_piece *p = &piece[component[i]];
+        p->length += cell * cell / (2 * PLM_PI * fmax(sketch->point[i].radius, 0.1 * sketch->scale.stem_radius));
+        if (!is_thick(sketch, i)) continue;
+        if (!p->has_thick || at[2] < p->low[2]) memcpy(p->low, at, sizeof p->low);
+        if (!p->has_thick || at[2] > p->high[2]) memcpy(p->high, at, sizeof p->high);
+        p->has_thick = true;
+    }
+}
+
+/* Whether a piece stands upright below a point, a gap apart. */
+static bool is_below(const plm_sketch *sketch, const tube_piece *p, const float point[3])
+{
+    const double R = sketch->scale.radius, rise = (double)p->high[2] - p->low[2];
+    const double gap[3] = {point[0] - p->high[0], point[1] - p->high[1], point[2] - p->high[2]};
+    return p->has_thick && rise >= PIECE_LEAST * R && plm_norm(gap) < PIECE_GAP * R &&
+           hypot((double)p->high[0] - p->low[0], (double)p->high[1] - p->low[1]) < rise;
+}
+
+/* Pieces that are long against the longest may hold the stem's base: specks called tube shall not. Nor do they where a gap in
+ * the scan leaves a piece of the stem below the others. */
+static void choose_pieces(const plm_sketch *sketch, tube_piece *piece, size_t count)
+{
+    double longest = 0;
+    for (size_t c = 0; c < count; c++) longest = fmax(longest, piece[c].length);
+    const tube_piece *lowest = NULL;
+    for (size_t c = 0; c < count; c++) {
+        piece[c].is_candidate = piece[c].has_thick && piece[c].length >= PIECE_SHARE * longest;
+        if (piece[c].is_candidate && (!lowest || piece[c].low[2] < lowest->low[2])) lowest = &piece[c];
+    }
+    for (size_t c = 0; lowest && c < count; c++) {
+        if (piece[c].is_candidate || !is_below(sketch, &piece[c], lowest->low)) continue;
+        piece[c].is_candidate = true;
+        lowest = &piece[c];
+        c = SIZE_MAX; /* what is below that, from the first on */
+    }
+}
+
+/* Thick tube points of the pieces of tube that may be of the stem. */
 static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm_error *error)
 {
     const size_t count = sketch->working.count;
@@ -77,21 +129,14 @@ static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm
     int32_t *colour = plm_scratch_take(&scratch, count, sizeof *colour);
     int32_t *component = plm_scratch_take(&scratch, count, sizeof *component);
     uint32_t *stack = plm_scratch_take(&scratch, count, sizeof *stack);
-    double *length = plm_scratch_take(&scratch, count, sizeof *length);
+    tube_piece *piece = plm_scratch_take(&scratch, count, sizeof *piece);
     if (!scratch.failed) {
-        const double cell = sketch->working.cell;
         for (size_t i = 0; i < count; i++) colour[i] = sketch->is_tube[i] ? 0 : -1;
         const size_t components = plm_graph_components(&sketch->graph, colour, component, stack);
-        double longest = 0;
-        for (size_t i = 0; i < count; i++) {
-            if (component[i] < 0) continue;
-            double *sum = &length[component[i]];
-            *sum += cell * cell / (2 * PLM_PI * fmax(sketch->point[i].radius, 0.1 * sketch->scale.stem_radius));
-            if (*sum > longest) longest = *sum;
-        }
-        (void)components;
+        measure_pieces(sketch, component, piece);
+        choose_pieces(sketch, piece, components);
         for (size_t i = 0; i < count; i++)
-            candidate[i] = component[i] >= 0 && is_thick(sketch, i) && length[component[i]] >= 0.2 * longest;
+            candidate[i] = component[i] >= 0 && is_thick(sketch, i) && piece[component[i]].is_candidate;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

@@ -310,6 +310,42 @@ static void a_virtual_tomato_of_thick_rachises_is_compound(void **unused)
     virtual_plant_free(&made);
 }
 
+/* The lowest leaflets of the topmost leaf are so near to the stem's end that they made two leaves of their own. */
+static void leaflets_at_the_stem_are_no_leaves(void **unused)
+{
+    (void)unused;
+    const plm_scan_options options = {.scanner = PLM_SCANNER_RGBD,
+                                      .seed = 20002,
+                                      .points = 45000,
+                                      .noise = 5e-4,
+                                      .views = 12,
+                                      .outliers = 0.005,
+                                      .image_width = 1200};
+    virtual_plant made = virtual_plant_make("tomato", 0, &options);
+    assert_int_equal(made.found.leaf_count, made.plant.leaf_count);
+    virtual_plant_free(&made);
+}
+
+/* The way to the tip of a simple leaf of a soybean leads along the rim of its blade, where splats are so few that nothing lies
+ * beside the way: a seventh of the blade was taken for a rachis. */
+static void the_rim_of_a_thinly_scanned_blade_is_no_rachis(void **unused)
+{
+    (void)unused;
+    const plm_scan_options options = {
+        .scanner = PLM_SCANNER_SPLAT, .seed = 20001, .points = 45000, .noise = 5e-4, .views = 60, .outliers = 0.01};
+    virtual_plant made = virtual_plant_make("soybean", 0, &options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    size_t all = 0, petiole = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        if (cloud->label[i] != PLM_LABEL_LEAF || cloud->organ[i] != 1) continue;
+        all++;
+        petiole += made.found.label[i] == PLM_LABEL_PETIOLE;
+    }
+    print_message("%zu of the blade's %zu points called petiole\n", petiole, all);
+    assert_true(all > 400 && (double)petiole < 0.08 * (double)all);
+    virtual_plant_free(&made);
+}
+
 /* Of the blade's points of leaves that have few, those called so. In noise an eighth was taken for petioles. */
 static void young_leaves_of_a_virtual_rosette_keep_their_blades(void **unused)
 {
@@ -365,6 +401,8 @@ int main(void)
         cmocka_unit_test(rachises_of_virtual_plants_are_found),
         cmocka_unit_test(a_virtual_tomato_of_thick_rachises_is_compound),
         cmocka_unit_test(leaflets_of_virtual_plants_are_found_in_noise),
+        cmocka_unit_test(leaflets_at_the_stem_are_no_leaves),
+        cmocka_unit_test(the_rim_of_a_thinly_scanned_blade_is_no_rachis),
         cmocka_unit_test(young_leaves_of_a_virtual_rosette_keep_their_blades),
         cmocka_unit_test(the_outlines_of_a_rosettes_blades_tell_their_borders),
     };
