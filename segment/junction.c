@@ -245,7 +245,7 @@ static double share_beyond(const plm_leaf_way *way, size_t station)
 }
 
 /* Whether the narrow stations [begin, split) are rachis: a stretch as long as a window that is long or as full as a tube.
- * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf. */
+ * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf, or few points. */
 static bool is_rachis(const work *w, size_t begin, size_t split)
 {
     const plm_leaf_way *way = &w->way;

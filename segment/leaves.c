@@ -250,8 +250,8 @@ static plm_status join_leaflets(plm_sketch *sketch, plm_side_groups *groups, plm
     for (size_t g = 0; g < groups->count; g++) {
         if (to[g] < 0) continue;
         plm_side_group *host = &groups->group[to[g]], *own = &groups->group[g];
-        host->blades += own->blades, host->blade_area += own->blade_area, host->tube_length += own->tube_length;
-        own->blades = 0, own->blade_area = 0, own->tube_length = 0;
+        host->blades += own->blades, host->blade_area += own->blade_area;
+        own->blades = 0, own->blade_area = 0;
     }
     plm_free(to);
     return PLM_OK;

@@ -154,7 +154,8 @@ static plm_status find_gathering(const float (*xyz)[3], size_t count, double *ga
     return status;
 }
 
-/* Petioles of simple leaves and of rosettes, told at all points. Those of a rosette have no stem that hides their feet. */
+/* Petioles, told at all points. Those of a rosette have no stem that hides their feet; where compound leaves begin their
+ * leaflets have told. */
 static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, plm_sketch *sketch,
                                   plm_segmentation *out, plm_error *error)
 {

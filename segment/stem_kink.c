@@ -212,7 +212,7 @@ plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bo
     return take_straight(sketch, kink, least, false, done, error);
 }
 
-/* Typical radius of the nodes [first, end) of the path. */
+/* Mean radius of the nodes [first, end) of the path. */
 static double mean_radius(const plm_stem_path *stem, size_t first, size_t end)
 {
     double sum = 0;
