@@ -2,6 +2,7 @@
  * then the blades at its end seem to sit on the stem without the petioles that the other leaves have. */
 #include "segment/side_groups.h"
 #include "segment/stem_fit.h"
+#include "segment/stem_rachis.h"
 
 #include <math.h>
 
@@ -10,7 +11,7 @@ static const double SESSILE = 0.4;      /* of the other leaves' petioles: a shor
 static const double PETIOLES_LEAST = 2; /* median length of the others' tubes in R: else the plant has no petioles */
 static const double PETIOLES_FOR_KINK = 0.6; /* the same where the path turns */
 static const double INTERNODE_LEAST = 2;     /* the stem goes on beyond a turn with leaves on it, in R */
-enum { ROUNDS = 3 };
+enum { ROUNDS = 3, ARM = 6 };
 static const double SHARP_TURN = 0.5; /* radians; stems turn less at a node, ... */
 static const double SHARP_REACH = 2;  /* ... and the turn is within so many R of the foot */
 static const double BARE_LEAST = 2;   /* a stretch without feet before the end, in R: the petiole */
@@ -42,18 +43,6 @@ static double typical_petiole(const plm_side_groups *groups, double end, float *
     return plm_quantile(value, count, 0.5);
 }
 
-static double mean_radius(const plm_stem_path *stem, size_t n, int step)
-{
-    double sum = 0;
-    int count = 0;
-    for (size_t m = n; count < 6 && m<stem->count; m = step> 0 ? m + 1 : m - 1) {
-        sum += stem->radius[m];
-        count++;
-        if (step < 0 && m == 0) break;
-    }
-    return sum / count;
-}
-
 /* The node between two arc lengths at which the path turns and thins the most; told: enough to say that it leaves the stem there. */
 static size_t best_cut(const plm_stem_path *stem, double from, double to, double fallback, bool *told)
 {
@@ -62,7 +51,8 @@ static size_t best_cut(const plm_stem_path *stem, double from, double to, double
     for (size_t n = 3; n + 3 < stem->count; n++) {
         if (stem->along[n] < from || stem->along[n] > to) continue;
         const double bend = plm_stem_turn(stem, n);
-        const double drop = 1 - mean_radius(stem, n, 1) / mean_radius(stem, n, -1);
+        const double beyond = plm_stem_mean_radius(stem, n, n + ARM < stem->count ? n + ARM : stem->count);
+        const double drop = 1 - beyond / plm_stem_mean_radius(stem, n + 1 > ARM ? n + 1 - ARM : 0, n + 1);
         const double evidence = bend / BEND + drop / DROP;
         if (evidence > most) {
             most = evidence;
@@ -224,15 +214,18 @@ static void forget_low_stem(plm_sketch *sketch)
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
-    bool again, forked;
+    bool again = true, forked;
     plm_status status = plm_stem_leave_thin(sketch, INTERNODE_LEAST * sketch->scale.radius, &forked, error);
     if (status == PLM_OK && forked) plm_sketch_mark_stem(sketch);
-    again = true;
     for (int round = 0; round < ROUNDS && again && status == PLM_OK; round++) {
         stem_top top;
         status = find_top(sketch, &top, error);
         if (status != PLM_OK) return status;
-        status = leave_petiole(sketch, &top, &again, error);
+        again = false;
+        if (round == 0)
+            status = plm_stem_leave_rachis(sketch, &top.groups, top.end, SESSILE * top.typical, &again, error);
+        if (again) plm_sketch_mark_stem(sketch);
+        if (status == PLM_OK && !again) status = leave_petiole(sketch, &top, &again, error);
         if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
         plm_side_groups_free(&top.groups);
     }

@@ -34,6 +34,9 @@ size_t plm_stem_circle(const double (*e)[2], size_t count, double scatter, doubl
 /** Writes along[] from the nodes. */
 void plm_stem_measure_along(plm_stem_path *stem);
 
+/** Mean radius of the nodes [first, end). */
+double plm_stem_mean_radius(const plm_stem_path *stem, size_t first, size_t end);
+
 void plm_stem_path_free(plm_stem_path *path);
 
 /** Angle (radians) between the directions of the path below and above node n. */

@@ -212,14 +212,6 @@ plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bo
     return take_straight(sketch, kink, least, false, done, error);
 }
 
-/* Mean radius of the nodes [first, end) of the path. */
-static double mean_radius(const plm_stem_path *stem, size_t first, size_t end)
-{
-    double sum = 0;
-    for (size_t n = first; n < end; n++) sum += stem->radius[n];
-    return sum / (double)(end - first);
-}
-
 plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm_error *error)
 {
     *done = false;
@@ -229,8 +221,8 @@ plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm
         const double turn = plm_stem_turn(stem, n);
         if (turn < KINK || turn < plm_stem_turn(stem, n - 1) || turn < plm_stem_turn(stem, n + 1)) continue;
         const size_t end = n + FORKED + COMPARED < stem->count ? n + FORKED + COMPARED : stem->count;
-        if (mean_radius(stem, n + FORKED, end) > THINNER * mean_radius(stem, n - FORKED - COMPARED, n - FORKED))
-            continue;
+        const double below = plm_stem_mean_radius(stem, n - FORKED - COMPARED, n - FORKED);
+        if (plm_stem_mean_radius(stem, n + FORKED, end) > THINNER * below) continue;
         status = take_straight(sketch, n, least, true, done, error);
     }
     return status;

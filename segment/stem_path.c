@@ -229,6 +229,13 @@ void plm_stem_measure_along(plm_stem_path *stem)
     }
 }
 
+double plm_stem_mean_radius(const plm_stem_path *stem, size_t first, size_t end)
+{
+    double sum = 0;
+    for (size_t n = first; n < end; n++) sum += stem->radius[n];
+    return sum / (double)(end - first);
+}
+
 /* Nodes at equal steps along a chain of points given from the base up. */
 static plm_status resample(const plm_sketch *sketch, const uint32_t *chain, size_t length, plm_stem_path *stem,
                            plm_error *error)

@@ -46,6 +46,26 @@ static void the_last_internode_is_no_petiole_of_a_young_leaf(void **unused)
         0.92);
 }
 
+/* The way up turned into the petiole of a leaf, which is longer than the rest of the stem: that bears two leaves. */
+static void a_way_into_a_rachis_goes_back_to_the_stem(void **unused)
+{
+    (void)unused;
+    check_soybean(
+        &(plm_scan_options){
+            .scanner = PLM_SCANNER_SPLAT, .seed = 21005, .points = 45000, .noise = 5e-4, .views = 60, .outliers = 0.01},
+        0.9);
+}
+
+/* The topmost leaf's petiole goes on where the stem ends; its leaflets' own tubes are long for leaflets. */
+static void the_stem_ends_below_the_leaflets_of_its_topmost_leaf(void **unused)
+{
+    (void)unused;
+    check_soybean(
+        &(plm_scan_options){
+            .scanner = PLM_SCANNER_RGBD, .seed = 21001, .points = 45000, .noise = 5e-4, .views = 12, .outliers = 0.005},
+        0.9);
+}
+
 /* Above the first leaves the scan has a gap, so that what is below is a piece of tube of its own. */
 static void a_stem_goes_on_below_a_gap(void **unused)
 {
@@ -138,6 +158,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(leaflets_at_the_end_of_the_way_are_no_leaves),
         cmocka_unit_test(the_last_internode_is_no_petiole_of_a_young_leaf),
+        cmocka_unit_test(a_way_into_a_rachis_goes_back_to_the_stem),
+        cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
     };

@@ -1,0 +1,104 @@
+/* segment/stem_rachis.c: the leaflets of a compound leaf seem to sit on the stem where the way up ran on into their rachis: beyond
+ * the last leaf that has a rachis of its own nothing but single blades hangs on the way, at short tubes if at any. */
+#include "segment/stem_rachis.h"
+
+#include "cloud/linear.h"
+#include "segment/stem_fit.h"
+
+#include <math.h>
+
+static const double BLADES_LEAST = 1.5;   /* a leaf below: the plant has compound leaves */
+static const double LEAFLET_TUBE = 0.4;   /* of their tubes: a single blade with less may be a leaflet, ... */
+static const double LEAFLETS_TUBE = 0.15; /* ... and some that touch, with less than this */
+static const double FORK_BEFORE = 1.5; /* the way may leave the stem this far (in R) before the last leaf's foot, ... */
+static const double LEAFLET_BEFORE = 1.5; /* ... and rather leaves it this far before the first leaflet's */
+static const double BEND = 0.35;          /* turns (radians) and ... */
+static const double DROP = 0.25;          /* ... losses of radius that count as one unit of evidence */
+static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
+enum {
+    COMPOUND_LEAST = 2,
+    LEAFLETS_LEAST = 2,
+    NEAR = 4, /* nodes: feet of leaves widen the way and bend it to and fro, so what lies nearer does not count, ... */
+    FAR = 12, /* ... nor what lies farther off */
+    MARGIN = 3, /* nodes of an arm at least */
+};
+
+/* Whether what hangs at a foot may be leaflets of one leaf; usual: tube of the plant's compound leaves. */
+static bool are_leaflets(const plm_side_group *group, double usual)
+{
+    return group->tube_length < (group->blades > 1 ? LEAFLETS_TUBE : LEAFLET_TUBE) * usual;
+}
+
+/* Median tube of the compound leaves on the stem; 0: the plant has simple leaves. value: scratch. */
+static double usual_rachis(const plm_side_groups *groups, double end, double petiole, float *value)
+{
+    size_t blades = 0, leaves = 0, count = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (!group->has_foot || !group->blades || group->along >= end) continue;
+        if (group->tube_length < petiole * (double)group->blades) continue;
+        blades += group->blades;
+        leaves++;
+        if (group->blades > 1) value[count++] = (float)group->tube_length;
+    }
+    if (count < COMPOUND_LEAST || (double)blades < BLADES_LEAST * (double)leaves) return 0;
+    return plm_quantile(value, count, 0.5);
+}
+
+/* Direction (pointing up) and mean radius of the path between NEAR and FAR nodes beyond (step 1) or before (-1) a node. */
+static double look_along(const plm_stem_path *stem, size_t n, int step, double out[3])
+{
+    const size_t last = stem->count - 1;
+    const size_t low = step > 0 ? n + NEAR : n > FAR ? n - FAR : 0;
+    const size_t high = step > 0 ? (n + FAR < last ? n + FAR : last) : n - NEAR;
+    for (int axis = 0; axis < 3; axis++) out[axis] = stem->node[high][axis] - stem->node[low][axis];
+    plm_normalise(out);
+    return plm_stem_mean_radius(stem, low, high + 1);
+}
+
+/* The node between two arc lengths where the way most likely leaves the stem, 0: none. Leaflets may hide that a rachis is thin. */
+static size_t best_exit(const plm_stem_path *stem, double from, double to)
+{
+    size_t best = 0;
+    double most = EVIDENCE_LEAST;
+    for (size_t n = NEAR + MARGIN; n + NEAR + MARGIN < stem->count; n++) {
+        if (stem->along[n] < from || stem->along[n] > to) continue;
+        double below[3], above[3];
+        const double before = look_along(stem, n, -1, below), beyond = look_along(stem, n, 1, above);
+        const double turn = acos(fmax(-1, fmin(1, plm_dot(below, above))));
+        const double evidence = turn / BEND + fmax(1 - beyond / before, 0) / DROP;
+        if (evidence > most) {
+            most = evidence;
+            best = n;
+        }
+    }
+    return best;
+}
+
+plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *groups, double end, double petiole,
+                                 bool *done, plm_error *error)
+{
+    const double R = sketch->scale.radius;
+    *done = false;
+    float *value = plm_alloc(groups->count + 1, sizeof *value, error);
+    if (!value) return PLM_E_MEMORY;
+    const double usual = usual_rachis(groups, end, petiole, value);
+    plm_free(value);
+    double last = 0, first = INFINITY;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (group->has_foot && group->blades && !are_leaflets(group, usual)) last = fmax(last, group->along);
+    }
+    size_t leaflets = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (!group->has_foot || !group->blades || group->along <= last) continue;
+        leaflets += group->blades;
+        first = fmin(first, group->along);
+    }
+    if (!(usual > 0) || !(last > 0) || leaflets < LEAFLETS_LEAST) return PLM_OK;
+    const double from = last - FORK_BEFORE * R;
+    size_t node = best_exit(&sketch->stem, from, first - LEAFLET_BEFORE * R);
+    if (!node) node = best_exit(&sketch->stem, from, first);
+    return node ? plm_stem_straighten(sketch, node, 0, done, error) : PLM_OK;
+}
