@@ -6,7 +6,6 @@
 #include "segment/junction.h"
 
 #include "cloud/linear.h"
-#include "segment/line_fit.h"
 #include "segment/rachis_line.h"
 #include "segment/scratch.h"
 
@@ -22,18 +21,19 @@ static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this lengt
 /* Share of the leaf's points that its last leaflet holds at least where balls find no tube before it, and the share where
  * the narrow stretch before it is shorter than so many windows. */
 static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
-static const double LEAST_CLEAR = 0.15; /* the same where nothing but a tube lies about the line */
-static const double FILLED = 0.4;       /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
-static const double BLADE = 2;          /* widths of the tube that the last leaflet reaches at least */
-static const double NEAR = 3.2;         /* points within so many widths of a tube station's middle are of the tube */
-static const double NEAR_CLEAR = 2.2;   /* the same where leaflets may lie beside it */
-static const double FOOT_LINE = 2;      /* length of the petiole that gives its line at the foot, in R */
-static const double FOOT = 0.35;        /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1;      /* of a step, in the search for the change */
-static const double NARROW = 0.07;      /* quantile of the widths of a rosette's leaf that is its tube's */
-static const double LEAST_BLADE = 0.2;  /* share of a simple leaf's points beyond its junction: less is none */
+/* The same where nothing but a tube lies about the line, at a few stations and at many. */
+static const double LEAST_CLEAR = 0.15, LEAST_SURE = 0.1;
+static const double WIDEST = 1.15; /* tubes of the narrowest of the larger leaves: a compound leaf's tube is no wider */
+static const double FILLED = 0.4;  /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
+static const double BLADE = 2;     /* widths of the tube that the last leaflet reaches at least */
+static const double FOOT = 0.35;   /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1; /* of a step, in the search for the change */
+static const double NARROW = 0.07; /* quantile of the widths of a rosette's leaf that is its tube's */
+static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
 enum {
-    CLEAR = 2, /* stations at which nothing but a tube lies about the line: a rachis */
+    CLEAR = 2,        /* stations at which nothing but a tube lies about the line: a rachis, ... */
+    SURE = 5,         /* ... and so many: surely */
+    LARGER_LEAST = 2, /* leaves that tell how wide a smaller one's tube is at most */
     BEFORE = 6,
     AFTER = 9,
     FEWEST_STATIONS = 6,
@@ -54,6 +54,7 @@ typedef struct work {
     uint32_t *trail; /* from the leaf's farthest point to the foot */
     size_t trail_count;
     bool *clear, *beside; /* of each station: see plm_rachis_clear */
+    float *widest;        /* of compound plants: how wide each leaf's tube is at most; else NULL */
     uint32_t stamp;
 } work;
 
@@ -214,12 +215,15 @@ size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first)
     return best;
 }
 
-/* Typical number of points of the tube's stations; 0 where there are none. */
+/* Typical number of points of the tube's stations; 0 where there are none. Wide ones hold leaflets. */
 static double tube_count(const work *w, size_t first)
 {
     size_t count = 0;
-    for (size_t k = first; k < w->way.station_count; k++)
-        if (w->way.station[k].tube > TUBE_SHARE) w->value[count++] = (float)w->way.station[k].count;
+    for (size_t k = first; k < w->way.station_count; k++) {
+        const plm_station *station = &w->way.station[k];
+        if (station->tube > TUBE_SHARE && station->width <= plm_leaf_wide(&w->way))
+            w->value[count++] = (float)station->count;
+    }
     return count ? plm_quantile(w->value, count, 0.5) : 0;
 }
 
@@ -254,7 +258,7 @@ static bool is_rachis(const work *w, size_t begin, size_t split)
     size_t clear = 0;
     for (size_t k = begin; k < split; k++) tubes += way->station[k].tube, clear += w->clear[k];
     const bool filled = run_points(way, begin, split) >= FILLED * way->tube_points * run;
-    if (clear >= CLEAR && filled) return share_beyond(way, split) > LEAST_CLEAR;
+    if (clear >= CLEAR && filled) return share_beyond(way, split) > (clear >= SURE ? LEAST_SURE : LEAST_CLEAR);
     if (run < WINDOW || !plm_leaf_is_full(way, begin, split)) return false;
     if (tubes > TUBE_SHARE * run) return true;
     return filled && share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
@@ -320,101 +324,7 @@ double plm_leaf_change(const plm_leaf_way *way, size_t first, size_t split)
     return at * way->step;
 }
 
-/* ---- Labels ----------------------------------------------------------------------------------------------------- */
-
-static double gap_squared(const float a[3], const double b[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sum;
-}
-
-const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance)
-{
-    size_t k = (size_t)(distance / way->step + 0.5);
-    if (k >= way->station_count) k = way->station_count - 1;
-    while (k > 0 && !way->station[k].count) k--;
-    return &way->station[k];
-}
-
-/* The petiole's line at its foot, from the first stations that are as narrow as a tube: what lies before them, where the
- * stem's remains lie as near, is the petiole's only along this line. begin: distance at which the line begins. false where
- * there are too few. */
-static bool foot_line(const plm_leaf_way *way, double origin[3], double along[3], double *begin)
-{
-    const size_t end = (size_t)(way->junction / way->step),
-                 wanted = (size_t)(FOOT_LINE * way->sketch->scale.radius / way->step);
-    plm_line_sums sums = {0};
-    size_t narrow = 0, k = 0;
-    for (; k < end && (narrow < (size_t)WINDOW || !plm_leaf_is_full(way, k - narrow, k)); k++)
-        narrow = way->station[k].count > 1 && way->station[k].width < plm_leaf_wide(way) ? narrow + 1 : 0;
-    if (narrow < (size_t)WINDOW || !plm_leaf_is_full(way, k - narrow, k)) return false;
-    const size_t first = k - narrow;
-    *begin = (double)first * way->step;
-    for (k = first; k < end && k < first + wanted; k++) {
-        if (!way->station[k].count || way->station[k].width > plm_leaf_wide(way)) continue;
-        plm_line_add(&sums, (double)k * way->step - *begin, way->station[k].middle);
-    }
-    return plm_line_fit(&sums, origin, along);
-}
-
-/* Points before the first clear station that are off the petiole's line are the stem's. */
-static void clean_foot(work *w)
-{
-    const plm_leaf_way *way = &w->way;
-    plm_sketch *s = w->sketch;
-    double origin[3], along[3], begin;
-    if (!s->stem.count || !foot_line(way, origin, along, &begin)) return;
-    const double reach = NEAR * way->tube;
-    for (size_t k = 0; k < way->count && way->distance[way->order[k]] < begin; k++) {
-        const uint32_t i = way->order[k];
-        double d[3];
-        for (int a = 0; a < 3; a++) d[a] = s->working.xyz[i][a] - origin[a];
-        const double forward = plm_dot(d, along);
-        if (plm_dot(d, d) - forward * forward < reach * reach) {
-            s->is_tube[i] = true;
-        } else if (s->is_tube[i]) {
-            s->leaf[i] = -1; /* tube without leaf: stem */
-        }
-    }
-}
-
-static void relabel_simple(work *w)
-{
-    const plm_leaf_way *way = &w->way;
-    const double reach = NEAR * way->tube;
-    for (size_t k = 0; k < way->count; k++) {
-        const uint32_t i = way->order[k];
-        if (way->distance[i] >= way->junction) {
-            w->sketch->is_tube[i] = false;
-            continue;
-        }
-        const plm_station *station = plm_leaf_station(way, way->distance[i]);
-        if (station->width < plm_leaf_wide(way))
-            w->sketch->is_tube[i] = gap_squared(w->sketch->working.xyz[i], station->middle) < reach * reach;
-    }
-}
-
-static void relabel_compound(work *w)
-{
-    plm_sketch *s = w->sketch;
-    const plm_leaf_way *way = &w->way;
-    const uint32_t tip = way->order[way->count - 1];
-    for (size_t k = 0; k < way->count; k++) {
-        const uint32_t i = way->order[k];
-        const plm_station *station = plm_leaf_station(way, way->distance[i]);
-        const double reach = (w->beside[station - way->station] ? NEAR_CLEAR : NEAR) * way->tube;
-        if (way->distance[i] >= way->junction) {
-            if (!s->is_tube[i] || gap_squared(s->working.xyz[i], station->middle) > 4 * station->width * station->width)
-                continue;
-            s->is_tube[i] = false;
-            s->leaflet[i] = s->leaflet[tip];
-        } else if (station->width < plm_leaf_wide(way) &&
-                   gap_squared(s->working.xyz[i], station->middle) < reach * reach) {
-            s->is_tube[i] = true;
-        }
-    }
-}
+/* ---- Leaf by leaf ------------------------------------------------------------------------------------------------ */
 
 /* The leaf's stations and the width of its tube; no points in way where there is nothing to tell. */
 static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
@@ -439,10 +349,41 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
     return status;
 }
 
+/* The most that each leaf's tube can be wide: petioles of smaller leaves are no thicker, but in noise balls call their leaflets
+ * tubes as well. */
+static plm_status bound_tubes(work *w, plm_error *error)
+{
+    const size_t count = w->sketch->leaf_count;
+    uint32_t *size = plm_scratch_take(&w->scratch, count, sizeof *size);
+    float *tube = plm_scratch_take(&w->scratch, count, sizeof *tube);
+    w->widest = plm_scratch_take(&w->scratch, count, sizeof *w->widest);
+    plm_status status = w->scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    for (size_t leaf = 0; leaf < count && status == PLM_OK; leaf++) {
+        status = measure_leaf(w, (int32_t)leaf, error);
+        size[leaf] = (uint32_t)w->way.count;
+        tube[leaf] = w->way.count ? (float)w->way.tube : INFINITY;
+    }
+    for (size_t leaf = 0; leaf < count && status == PLM_OK; leaf++) {
+        size_t larger = 0;
+        w->widest[leaf] = INFINITY;
+        for (size_t j = 0; j < count; j++) {
+            if (size[j] <= size[leaf]) continue;
+            larger++;
+            w->widest[leaf] = fminf(w->widest[leaf], (float)(WIDEST * tube[j]));
+        }
+        if (larger < LARGER_LEAST) w->widest[leaf] = INFINITY;
+    }
+    return status;
+}
+
 static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
     plm_status status = measure_leaf(w, leaf, error);
+    if (status == PLM_OK && way->count && w->widest && way->tube > w->widest[leaf]) {
+        way->tube = w->widest[leaf];
+        way->tube_points = tube_count(w, w->first);
+    }
     const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
     if (status == PLM_OK && way->count && compound)
         status = plm_rachis_clear(way, w->trail, w->trail_count, w->clear, w->beside, error);
@@ -453,10 +394,10 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
         return PLM_OK;
     if (compound)
-        relabel_compound(w);
+        plm_leaf_relabel_compound(w->sketch, way, w->beside);
     else
-        relabel_simple(w);
-    clean_foot(w);
+        plm_leaf_relabel_simple(w->sketch, way);
+    plm_leaf_clean_foot(w->sketch, way);
     return compound ? plm_leaf_leaflets(w->sketch, way, error) : PLM_OK;
 }
 
@@ -480,6 +421,7 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.beside = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.beside);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK && sketch->habit == PLM_HABIT_COMPOUND) status = bound_tubes(&w, error);
     for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)
         status = set_leaf(&w, (int32_t)leaf, error);
     plm_scratch_free(&w.scratch, NULL);

@@ -38,6 +38,14 @@ typedef struct plm_leaf_way {
 /** The station nearest to a distance, or the last before it that has points. */
 const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance);
 
+/** Sets is_tube of the leaf's points by way->junction. beside: of each station, whether leaflets may lie beside the line
+ * (plm_rachis_clear). sketch: way's, as in all that follow. */
+void plm_leaf_relabel_compound(plm_sketch *sketch, const plm_leaf_way *way, const bool *beside);
+void plm_leaf_relabel_simple(plm_sketch *sketch, const plm_leaf_way *way);
+
+/** Gives points before the first clear station that are off the petiole's line to the stem. */
+void plm_leaf_clean_foot(plm_sketch *sketch, const plm_leaf_way *way);
+
 /** Tells rachis, petiolules and leaflets of a compound leaf apart, up to way->junction. sketch: way's. */
 plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
 
