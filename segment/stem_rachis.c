@@ -75,6 +75,22 @@ static size_t best_exit(const plm_stem_path *stem, double from, double to)
     return best;
 }
 
+/* Whether a blade that may be a leaflet stands among the leaves with rachises, up to the last one: then not each leaf has one (straps
+ * that noise tore into blades look so). */
+static bool has_blade_between(const plm_side_groups *groups, double usual, double last)
+{
+    double lowest = INFINITY, highest = 0;
+    for (size_t g = 0; g < groups->count; g++) {
+        const plm_side_group *group = &groups->group[g];
+        if (!group->has_foot || !group->blades || group->along > last) continue;
+        if (are_leaflets(group, usual))
+            highest = fmax(highest, group->along);
+        else if (group->blades > 1)
+            lowest = fmin(lowest, group->along);
+    }
+    return highest > lowest;
+}
+
 plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *groups, double end, double petiole,
                                  bool *done, plm_error *error)
 {
@@ -97,6 +113,7 @@ plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *grou
         first = fmin(first, group->along);
     }
     if (!(usual > 0) || !(last > 0) || leaflets < LEAFLETS_LEAST) return PLM_OK;
+    if (has_blade_between(groups, usual, last)) return PLM_OK;
     const double from = last - FORK_BEFORE * R;
     size_t node = best_exit(&sketch->stem, from, first - LEAFLET_BEFORE * R);
     if (!node) node = best_exit(&sketch->stem, from, first);
