@@ -46,7 +46,8 @@ plm_status plm_rays_build(const double (*vertex)[3], size_t vertex_count, const 
     plm_rays *made = plm_alloc_zero(1, sizeof *made, error);
     if (!made) return PLM_E_MEMORY;
     plm_status status = PLM_OK;
-    made->device = rtcNewDevice("threads=1");
+    /* By default Embree takes the widest instructions there are, and some hits differ in their last bit by them. */
+    made->device = rtcNewDevice("threads=1,isa=avx2");
     if (!made->device) status = plm_fail(error, PLM_E_LIBRARY, "Embree gave no device");
     if (status == PLM_OK) {
         made->scene = rtcNewScene(made->device);

@@ -10,7 +10,7 @@ for effort in fast balanced; do
 done
 # The fit behind a value: its steps, its condition and why it ended.
 tr -d ' \n' <balanced/run.json | grep -o '{"trait":"stem_diameter","organ_id":0,"steps":[1-9][0-9]*,"condition":[0-9.]*,"end":"[a-z]*"}' |
-    sed 's/"steps":[0-9]*,"condition":[0-9.]*/"steps":S,"condition":C/'
+    sed 's/"steps":[0-9]*,"condition":[0-9.]*/"steps":S,"condition":C/; s/"small\(gain\|step\)"/"small"/'
 # What half of the points give is what all give, nearly.
 paste -d, fast/plants.csv balanced/plants.csv | awk -F, '
     NR == 1 { n = NF / 2; for (i = 1; i <= n; i++) name[i] = $i }
