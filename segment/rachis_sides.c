@@ -1,6 +1,7 @@
 /* segment/rachis_sides.c: parts of a leaf without what is on its line, and how far along the line they go. */
 #include "segment/rachis_sides.h"
 
+#include "segment/rachis_hills.h"
 #include "segment/scratch.h"
 
 #include <string.h>
@@ -86,16 +87,25 @@ static bool is_side(const piece *p, double tip, bool closely)
     return !closely || ((double)p->beside < BESIDE_MOST * (double)p->size && p->end >= p->last + BEYOND);
 }
 
+/* Takes the points off the line that are not marked yet, and the longest link that holds them together. Gives their number. */
+static size_t take_points(work *w, const float *off, double reach, bool closely, const bool *aside)
+{
+    const plm_leaf_way *way = w->way;
+    size_t points = 0;
+    for (size_t i = 0; i < way->sketch->working.count; i++) w->place[i] = UINT32_MAX;
+    for (size_t k = 0; k < way->count; k++)
+        if (!(off[k] < reach) && !aside[k]) w->place[way->order[k]] = (uint32_t)k, points++;
+    w->longest = (closely ? JOINED_CLOSELY : JOINED) * typical_link(w);
+    return points;
+}
+
 /* Marks the pieces at the sides among the points that are not marked yet. Gives the share of these in pieces as large as blades. */
 static double find_sides(work *w, const float *off, const uint32_t *station, double reach, bool closely, bool *aside)
 {
     const plm_leaf_way *way = w->way;
     const double cell = way->sketch->working.cell, tip = (double)way->station_count - 1;
-    size_t points = 0, large = 0;
-    for (size_t i = 0; i < way->sketch->working.count; i++) w->place[i] = UINT32_MAX;
-    for (size_t k = 0; k < way->count; k++)
-        if (!(off[k] < reach) && !aside[k]) w->place[way->order[k]] = (uint32_t)k, points++;
-    w->longest = (closely ? JOINED_CLOSELY : JOINED) * typical_link(w);
+    const size_t points = take_points(w, off, reach, closely, aside);
+    size_t large = 0;
     for (size_t k = 0; k < way->count; k++) {
         if (w->place[way->order[k]] == UINT32_MAX) continue;
         const size_t count = collect(w, (uint32_t)k);
@@ -116,13 +126,16 @@ plm_status plm_rachis_sides(const plm_leaf_way *way, const float *off, const uin
               .member = plm_scratch_take(&scratch, way->count, sizeof *w.member),
               .length = plm_scratch_take(&scratch, way->count, sizeof *w.length)};
     bool *parted = plm_scratch_take(&scratch, way->count, sizeof *parted);
-    if (!scratch.failed) {
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
         memset(aside, 0, way->count * sizeof *aside);
         const double share = find_sides(&w, off, station, reach, false, aside);
         memcpy(parted, aside, way->count * sizeof *parted);
         if (find_sides(&w, off, station, reach, true, parted) >= WHOLE * share)
             memcpy(aside, parted, way->count * sizeof *aside);
+        take_points(&w, off, reach, true, aside);
+        status = plm_rachis_hills(way, off, station, reach, w.longest, aside, error);
     }
     plm_scratch_free(&scratch, NULL);
-    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    return status;
 }

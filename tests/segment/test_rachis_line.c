@@ -9,6 +9,7 @@
 
 enum { MOST = 8000, STATIONS = 100 };
 static const double TUBE = 0.001, NOISE = 0.0003, STEP = 0.001, DENSITY = 2e6; /* points a square metre */
+static const double CELL = 0.0007;                                             /* as dense as that */
 
 typedef struct leaf {
     size_t count, trail_count;
@@ -87,7 +88,7 @@ static void find_clear(leaf *l, bool *clear, bool *beside, plm_leaf_way *way)
 {
     bool *is_tube = calloc(MOST, sizeof *is_tube);
     assert_non_null(is_tube);
-    plm_sketch sketch = {.working = {.count = l->count, .xyz = l->xyz, .cell = STEP}, .is_tube = is_tube};
+    plm_sketch sketch = {.working = {.count = l->count, .xyz = l->xyz, .cell = CELL}, .is_tube = is_tube};
     sketch.scale.radius = 0.003;
     plm_error error = {0};
     assert_ok(plm_graph_build((const float(*)[3])l->xyz, l->count, 10, 3 * STEP, &sketch.graph, &error));
@@ -149,6 +150,48 @@ static void rachis_is_clear_among_leaflets_that_touch_it(void **state)
     check_touching_leaflets(4, 0.0016); /* near enough that the graph joins them with the last one */
 }
 
+/* Leaflets that hold together with the last one for 3 mm, as dense there as anywhere: it alone is wider beyond. Of so wide a
+ * contact noise tells 18 of 20 apart; without hills it was 6. */
+static void rachis_is_clear_among_leaflets_that_touch_the_last(void **state)
+{
+    (void)state;
+    static leaf l;
+    static bool clear[STATIONS], beside[STATIONS];
+    plm_leaf_way way;
+    size_t right = 0;
+    for (uint64_t seed = 5; seed < 25; seed++) {
+        l = (leaf){.random = {.key = plm_key(seed, 0)}};
+        add_tube(&l, 0, 0.060);
+        add_pair(&l, 0.043, 0.053, 0.0018, 0.006);
+        add_pair(&l, 0.038, 0.060, 0.006, 0.020);
+        add_sheet(&l, 0.060, 0.068, -0.009, 0.009);
+        add_sheet(&l, 0.068, 0.088, -0.014, 0.014);
+        find_clear(&l, clear, beside, &way);
+        bool good = true;
+        for (size_t k = 10; k < 57; k++) good &= clear[k];
+        for (size_t k = 66; k < way.station_count; k++) good &= !clear[k];
+        right += good;
+    }
+    assert_true(right >= 17);
+}
+
+/* Teeth at the sides of a blade are none: it is parted along no line. */
+static void teeth_of_a_blade_are_no_leaflets(void **state)
+{
+    (void)state;
+    static leaf l;
+    static bool clear[STATIONS], beside[STATIONS];
+    plm_leaf_way way;
+    l = (leaf){.random = {.key = plm_key(10, 0)}};
+    add_tube(&l, 0, 0.040);
+    add_sheet(&l, 0.040, 0.085, -0.010, 0.010);
+    add_pair(&l, 0.042, 0.050, 0.010, 0.0135);
+    add_pair(&l, 0.054, 0.062, 0.010, 0.0135);
+    find_clear(&l, clear, beside, &way);
+    for (size_t k = 10; k < 37; k++) assert_true(clear[k]);
+    for (size_t k = 44; k < way.station_count; k++) assert_false(clear[k]);
+}
+
 /* A blade that is sparse along its middle is a blade all the same. */
 static void thin_place_amid_a_blade_is_no_rachis(void **state)
 {
@@ -174,6 +217,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rachis_between_leaflets_is_clear_of_them),
         cmocka_unit_test(rachis_is_clear_among_leaflets_that_touch_it),
+        cmocka_unit_test(rachis_is_clear_among_leaflets_that_touch_the_last),
+        cmocka_unit_test(teeth_of_a_blade_are_no_leaflets),
         cmocka_unit_test(thin_place_amid_a_blade_is_no_rachis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
