@@ -26,10 +26,9 @@ typedef struct work {
     const float *off;
     const uint32_t *station;
     double reach;
-    plm_graph graph; /* of the points off the line, over close links */
-    bool *is_off;    /* of each working point, as all that follow */
-    float *distance;
-    float *rise;
+    plm_graph graph;  /* of the points off the line, over close links */
+    float *distance;  /* of each working point, as all that follow */
+    float *rise;      /* INFINITY: not looked at */
     int32_t *hill;    /* above the saddles */
     int32_t *origin;  /* place in source of the nearest point on a hill */
     uint32_t *source; /* points on hills */
@@ -41,14 +40,10 @@ static void take_points(work *w, const bool *aside)
 {
     const plm_leaf_way *way = w->way;
     const plm_thinned *working = &way->sketch->working;
-    for (size_t i = 0; i < working->count; i++) {
-        w->is_off[i] = false;
-        w->distance[i] = w->rise[i] = INFINITY;
-    }
+    for (size_t i = 0; i < working->count; i++) w->distance[i] = w->rise[i] = INFINITY;
     for (size_t k = 0; k < way->count; k++) {
         const uint32_t i = way->order[k];
         if (w->off[k] < w->reach || aside[k]) continue;
-        w->is_off[i] = true;
         w->distance[i] = w->off[k];
         w->rise[i] = (float)fmax(RISE * w->off[k], RISE_CELLS * working->cell);
     }
@@ -60,9 +55,9 @@ static void link_closely(work *w, double longest)
     uint32_t count = 0;
     for (uint32_t i = 0; i < all->count; i++) {
         w->graph.first[i] = count;
-        for (uint32_t e = all->first[i]; e < all->first[i + 1] && w->is_off[i]; e++) {
+        for (uint32_t e = all->first[i]; e < all->first[i + 1] && isfinite(w->rise[i]); e++) {
             const uint32_t j = all->edge[e];
-            if (w->is_off[j] && plm_graph_length(all, i, j) <= longest) w->graph.edge[count++] = j;
+            if (isfinite(w->rise[j]) && plm_graph_length(all, i, j) <= longest) w->graph.edge[count++] = j;
         }
     }
     w->graph.first[all->count] = count;
@@ -89,7 +84,7 @@ static size_t collect(const work *w, int32_t hill)
     size_t count = 0;
     for (size_t k = 0; k < w->way->count; k++) {
         const uint32_t i = w->way->order[k];
-        if (w->is_off[i] && w->origin[i] >= 0 && w->hill[w->source[w->origin[i]]] == hill)
+        if (isfinite(w->rise[i]) && w->origin[i] >= 0 && w->hill[w->source[w->origin[i]]] == hill)
             w->member[count++] = (uint32_t)k;
     }
     return count;
@@ -116,7 +111,6 @@ static plm_status take_scratch(work *w, plm_scratch *scratch)
                            .xyz = all->xyz,
                            .first = plm_scratch_take(scratch, all->count + 1, sizeof *all->first),
                            .edge = plm_scratch_take(scratch, all->first[all->count] + 1, sizeof *all->edge)};
-    w->is_off = plm_scratch_take(scratch, count, sizeof *w->is_off);
     w->distance = plm_scratch_take(scratch, count, sizeof *w->distance);
     w->rise = plm_scratch_take(scratch, count, sizeof *w->rise);
     w->hill = plm_scratch_take(scratch, count, sizeof *w->hill);
