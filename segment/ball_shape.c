@@ -4,6 +4,8 @@
 #include "cloud/linear.h"
 #include "segment/scratch.h"
 
+#include <string.h>
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -26,30 +28,33 @@ static int thread_number(void)
 #endif
 }
 
+/* A point of the graph and the last ball that met it, which are asked for together. */
+typedef struct node {
+    float xyz[3];
+    uint32_t seen;
+} node;
+
 /* Moments about the centre; the walk goes breadth first, queue doubles as the list of members. */
-static void ball(const plm_graph *graph, uint32_t centre, float limit, uint32_t *seen, uint32_t *queue,
-                 plm_ball_shape *shape)
+static void ball(const plm_graph *graph, uint32_t centre, float limit, node *at, uint32_t *queue, plm_ball_shape *shape)
 {
     const float *middle = graph->xyz[centre];
     double sum[3] = {0}, moment[6] = {0};
     size_t count = 0;
     queue[count++] = centre;
-    seen[centre] = centre + 1; /* stamps: no clearing between balls */
+    at[centre].seen = centre + 1; /* stamps: no clearing between balls */
     for (size_t head = 0; head < count; head++) {
         const uint32_t here = queue[head];
-        const double x = (double)graph->xyz[here][0] - middle[0], y = (double)graph->xyz[here][1] - middle[1],
-                     z = (double)graph->xyz[here][2] - middle[2];
+        const float *p = at[here].xyz;
+        const double x = (double)p[0] - middle[0], y = (double)p[1] - middle[1], z = (double)p[2] - middle[2];
         sum[0] += x, sum[1] += y, sum[2] += z;
         moment[0] += x * x, moment[1] += x * y, moment[2] += x * z;
         moment[3] += y * y, moment[4] += y * z, moment[5] += z * z;
         for (uint32_t e = graph->first[here]; e < graph->first[here + 1]; e++) {
-            const uint32_t next = graph->edge[e];
-            if (seen[next] == centre + 1) continue;
-            const float dx = graph->xyz[next][0] - middle[0], dy = graph->xyz[next][1] - middle[1],
-                        dz = graph->xyz[next][2] - middle[2];
-            if (dx * dx + dy * dy + dz * dz > limit) continue;
-            seen[next] = centre + 1;
-            queue[count++] = next;
+            node *next = &at[graph->edge[e]];
+            if (next->seen == centre + 1) continue;
+            next->seen = centre + 1; /* also what is too far: it is that from every member */
+            const float dx = next->xyz[0] - middle[0], dy = next->xyz[1] - middle[1], dz = next->xyz[2] - middle[2];
+            if (dx * dx + dy * dy + dz * dz <= limit) queue[count++] = graph->edge[e];
         }
     }
     const double scale = 1.0 / (double)count;
@@ -72,15 +77,17 @@ plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape
 {
     plm_scratch scratch = {.error = error};
     const size_t threads = (size_t)thread_count();
-    uint32_t *seen = plm_scratch_take(&scratch, threads * graph->count, sizeof *seen);
+    node *at = plm_scratch_take(&scratch, threads * graph->count, sizeof *at);
     uint32_t *queue = plm_scratch_take(&scratch, threads * graph->count, sizeof *queue);
     if (!scratch.failed) {
         const float limit = (float)(radius * radius);
         const int64_t count = (int64_t)graph->count;
+        for (size_t i = 0; i < threads * graph->count; i++)
+            memcpy(at[i].xyz, graph->xyz[i % graph->count], sizeof at->xyz);
 #pragma omp parallel for schedule(dynamic, 256)
         for (int64_t i = 0; i < count; i++) {
             const size_t own = (size_t)thread_number() * graph->count;
-            ball(graph, (uint32_t)i, limit, seen + own, queue + own, &shape[i]);
+            ball(graph, (uint32_t)i, limit, at + own, queue + own, &shape[i]);
         }
     }
     plm_scratch_free(&scratch, NULL);

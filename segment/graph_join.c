@@ -68,6 +68,15 @@ static bool link_voxels(const plm_graph *graph, const plm_voxels *c, const int32
     return true;
 }
 
+/* The component of a voxel's points; -1: they are of several. */
+static int32_t sole_component(const plm_voxels *c, const int32_t *component, uint32_t v)
+{
+    const int32_t sole = component[c->member[c->first[v]]];
+    for (uint32_t i = c->first[v] + 1; i < c->first[v + 1]; i++)
+        if (component[c->member[i]] != sole) return -1;
+    return sole;
+}
+
 /* Candidate links: coarse voxels near each other, that hold points of different components. */
 static plm_status find_links(const plm_graph *graph, const plm_thinned *coarse, const int32_t *component,
                              double longest, link_list *list, plm_error *error)
@@ -77,18 +86,22 @@ static plm_status find_links(const plm_graph *graph, const plm_thinned *coarse, 
     plm_status status = plm_index_build((const float(*)[3])c->xyz, c->count, &index, error);
     uint32_t *row = plm_alloc(c->count, sizeof *row, error);
     float *squared = plm_alloc(c->count, sizeof *squared, error);
-    if (status == PLM_OK && (!row || !squared)) status = PLM_E_MEMORY;
+    int32_t *sole = plm_alloc(c->count, sizeof *sole, error);
+    if (status == PLM_OK && (!row || !squared || !sole)) status = PLM_E_MEMORY;
+    for (uint32_t v = 0; status == PLM_OK && v < c->count; v++) sole[v] = sole_component(c, component, v);
     /* Means lie within their voxels: two points nearer than longest have means nearer than this. */
     const float reach = (float)(longest + 2 * sqrt(3) * coarse->cell);
     for (uint32_t v = 0; status == PLM_OK && v < c->count; v++) {
         const size_t found = plm_index_ball(index, c->xyz[v], reach, c->count, row, squared);
-        for (size_t k = 0; k < found; k++)
-            if (row[k] >= v && !link_voxels(graph, c, component, v, row[k], longest, list, error))
-                status = PLM_E_MEMORY;
+        for (size_t k = 0; k < found; k++) {
+            if (row[k] < v || (sole[v] >= 0 && sole[v] == sole[row[k]])) continue;
+            if (!link_voxels(graph, c, component, v, row[k], longest, list, error)) status = PLM_E_MEMORY;
+        }
     }
     plm_index_free(index);
     plm_free(row);
     plm_free(squared);
+    plm_free(sole);
     return status;
 }
 
