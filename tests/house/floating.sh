@@ -8,12 +8,14 @@
 # project forbids it to fuse: points near a tie then go to the other organ, and an organ near the limit of what can be
 # measured to the other side of it. What that changes is told; only its rows have to be the same, and 99 of 100 states.
 # The -O0 build runs with invalid operations, divisions by zero and overflows trapped.
+# FLOATING_BUILDS: those to make, of O0 O2 clang fma contract; all if unset. O0 is always made.
 set -eu
 source=$1
 reference=$2
 shift 2
 [ $# -gt 0 ] || set -- "$source"/examples/data/*.ply
 builds=$source/build/floating
+wanted=" ${FLOATING_BUILDS:-O0 O2 clang fma contract} "
 tables=$(mktemp -d)
 trap 'rm -rf "$tables"' EXIT
 failures=0
@@ -23,6 +25,11 @@ fail() {
 }
 
 # build NAME CC CXX FLAGS ARITHMETIC
+wants() {
+    case $wanted in *" $1 "*) return 0 ;; esac
+    return 1
+}
+
 build() {
     cmake -S "$source" -B "$builds/$1" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$2" -DCMAKE_CXX_COMPILER="$3" \
         -DCMAKE_C_FLAGS="$4" -DCMAKE_CXX_FLAGS="$4" "-DPLANTIMETER_ARITHMETIC=$5" -DPLANTIMETER_TESTS=OFF \
@@ -76,25 +83,28 @@ same plain 'the release build, C library without FMA and AVX2'
 
 fused=
 if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then fused=-mfma; fi
-build O2 gcc g++ '-O2 -DNDEBUG' '-ffp-contract=off;-fno-math-errno;-fno-trapping-math'
 build O0 gcc g++ '-O0 -g1' -ffp-contract=off
+if wants O2; then build O2 gcc g++ '-O2 -DNDEBUG' '-ffp-contract=off;-fno-math-errno;-fno-trapping-math'; fi
 for variant in O0 O2; do
+    [ $variant = O0 ] || wants $variant || continue
     for threads in 1 2; do
         measure "$builds/$variant/plantimeter" $threads ${variant}_$threads "$@"
         same ${variant}_$threads "gcc -$variant, $threads threads"
     done
 done
-if command -v clang++ >/dev/null; then
+if wants clang && command -v clang++ >/dev/null; then
     build clang clang clang++ '-O2 -DNDEBUG' '-ffp-contract=off;-fno-math-errno;-fno-trapping-math'
     for threads in 1 2; do
         measure "$builds/clang/plantimeter" $threads clang_$threads "$@"
         same clang_$threads "clang -O2, $threads threads"
     done
 fi
-if [ -n "$fused" ]; then
+if [ -n "$fused" ] && wants fma; then
     build fma gcc g++ "-O3 $fused -DNDEBUG" '-ffp-contract=off;-fno-math-errno;-fno-trapping-math'
     measure "$builds/fma/plantimeter" 1 fma "$@"
     same fma 'gcc -O3 -mfma'
+fi
+if [ -n "$fused" ] && wants contract; then
     build contract gcc g++ "-O3 $fused -DNDEBUG" '-ffp-contract=fast;-fno-math-errno;-fno-trapping-math'
     measure "$builds/contract/plantimeter" 1 contract "$@"
     tell contract 'gcc -O3 -mfma -ffp-contract=fast'
