@@ -1,5 +1,6 @@
 /* segment/leaves.c: from side groups to leaves: what hangs on one foot is one leaf, its blades are leaflets. */
 #include "cloud/linear.h"
+#include "segment/habit.h"
 #include "segment/junction.h"
 #include "segment/rosette_core.h"
 #include "segment/scratch.h"
@@ -9,32 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
-static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
-/* Both weigh half, by the area of the leaves; more than this: strap leaves, ... */
-static const double STRAP_EVIDENCE = 0.5;
-static const double STRAP_RISING = 0.36; /* ... or than this where larger balls find more tubes: the folds of straps */
 /* Tubes without a leaf that are so near, in R, to the petioles of a rosette are their feet. */
 static const double FEET = 2;
-static const double TUBE_LEAVES = 0.5; /* more of what is off the stem is tube: straps */
-/* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
- * but not both: those with 0.35 on it have 0.66 tube at most. */
-static const double BARE_TUBES = 0.76, BARE_STEM = 0.35;
-/* Where less than this is on the stem (straps have 0.41 at most), most of the rest must be slimmer than so many of its radii: the
- * median is 0.43 at most of bare stems with so little on the stem (0.57 of one with 0.57 on it), 0.68 at least of 8 straps that noise makes round. */
-static const double BARE_ALONE = 0.5, BRANCH_RADIUS = 0.6;
-/* Noise thickens blades, and a foot may be a little slimmer than the stem: neither says enough then, and both together do, where
- * feet count from this many radii on (0.98 of a maize that neither told, 0.67 at most over 190 plants with petioles). */
-static const double STRAP_SLIM = 0.7, STRAP_WITH_TUBES = 0.73;
-/* Straps have one blade, seldom two a leaf where noise tears them: from so many on, straps ask for more than thick feet by
- * themselves give (two real maize of 2.4 and more blades give 0.91 and more), and slim ones say nothing: balls that suit a stem
- * are large for the rachises of many leaves, which then look thick (0.52 and 0.54 of a real and a virtual tomato of 1.6 and 1.8
- * blades; straps that are not folded have 1.5 at most). Not where straps are folded: their feet alone tell. */
-static const double MANY_BLADES = 1.55, STRAP_OF_MANY = 0.65;
-/* Blades a leaf from which on leaves are compound: simple ones have one (1.17 at most over 90 virtual plants, where a scan
- * tore one), compound ones more even where noise tears them into leaves of their own (1.29 at least). Three on one foot are
- * no tear; without them more is asked for. */
-static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
 
 /* Of a length of leaflet over one of rachis: a leaflet that touches another leaf's is nearer to that one's foot, but its own rachis
  * leads to it without crossing another leaflet. */
@@ -42,92 +19,6 @@ static const double LEAFLET_COST = 2;
 /* A blade on less than so much tube (in R), smaller than such a share of the leaf that stands on the stem so near (in R), is no
  * leaf of a compound plant but a leaflet: leaves have petioles. */
 static const double LEAFLET_TUBE = 0.3, LEAFLET_AREA = 0.25, LEAFLET_REACH = 2;
-
-/* How much a leaf looks like a strap: by its feet as thick as the stem, and where slimmer ones count as well. */
-static void strap_evidence(const plm_sketch *sketch, const plm_side_group *group, double *thick, double *slim)
-{
-    const double ratio = group->tube_radius / sketch->scale.stem_radius, tubes = 0.5 * (group->tube_share < STRAP_TUBE);
-    const bool is_thick = ratio > STRAP_RADIUS || ratio == 0;
-    *thick = tubes + 0.5 * is_thick;
-    *slim = tubes + 0.5 * (is_thick ? 1 : fmax((ratio - STRAP_SLIM) / (STRAP_RADIUS - STRAP_SLIM), 0));
-}
-
-static void count_tubes(const plm_sketch *sketch, size_t *tubes, size_t *stem)
-{
-    *tubes = *stem = 0;
-    for (size_t i = 0; i < sketch->working.count; i++) {
-        *tubes += sketch->is_tube[i];
-        *stem += sketch->is_stem[i];
-    }
-}
-
-bool plm_leaves_look_like_tubes(const plm_sketch *sketch)
-{
-    size_t tubes, stem;
-    count_tubes(sketch, &tubes, &stem);
-    return sketch->scale.rises && 2 * tubes > sketch->working.count;
-}
-
-/* Share of what is off the stem that looks like tubes: petioles and branches are no half of it, blades are. Where more is,
- * tubes are folded straps, or blades that noise makes round. Where most of the tubes are on the stem, it is a bare one: 0. */
-static double tube_leaves(const plm_sketch *sketch)
-{
-    size_t tubes, stem;
-    count_tubes(sketch, &tubes, &stem);
-    if (!sketch->stem.count || 2 * stem >= tubes) return 0;
-    return (double)(tubes - stem) / (double)(sketch->working.count - stem);
-}
-
-/* Most of what is off the stem is as thick as branches of it are, if tubes. */
-static bool has_slim_branches(const plm_sketch *sketch, size_t off)
-{
-    size_t slim = 0;
-    for (size_t i = 0; i < sketch->working.count; i++)
-        slim += !sketch->is_stem[i] && sketch->point[i].radius < BRANCH_RADIUS * sketch->scale.stem_radius;
-    return 2 * slim >= off;
-}
-
-/* Nearly all is tube, and much of it on one stem: branches without leaves, among which noise makes specks of blade. Straps that
- * pass for tubes have far less on their stem, or are as broad as it in noise that makes them round. */
-static bool is_bare(const plm_sketch *sketch)
-{
-    size_t tubes, stem;
-    count_tubes(sketch, &tubes, &stem);
-    const double all = (double)sketch->working.count;
-    if ((double)tubes < BARE_TUBES * all || (double)stem < BARE_STEM * all) return false;
-    return (double)stem >= BARE_ALONE * all || has_slim_branches(sketch, sketch->working.count - stem);
-}
-
-static plm_habit guess_habit(const plm_sketch *sketch, const plm_side_groups *groups)
-{
-    size_t leafy = 0, blades = 0, most = 0;
-    double area = 0, strap = 0, slim_strap = 0;
-    for (size_t g = 0; g < groups->count; g++) {
-        const plm_side_group *group = &groups->group[g];
-        if (!group->blades) continue;
-        leafy++;
-        blades += group->blades;
-        if (group->blades > most) most = group->blades;
-        if (!group->has_foot) continue;
-        area += group->blade_area;
-        double thick, slim;
-        strap_evidence(sketch, group, &thick, &slim);
-        strap += group->blade_area * thick;
-        slim_strap += group->blade_area * slim;
-    }
-    if (is_bare(sketch)) return PLM_HABIT_BARE_STEM;
-    const double tubes = tube_leaves(sketch);
-    if (tubes > TUBE_LEAVES) return PLM_HABIT_STRAP;
-    if (!leafy) return sketch->scale.has_tubes ? PLM_HABIT_BARE_STEM : PLM_HABIT_SINGLE_LEAF;
-    if (!sketch->scale.has_tubes) return leafy > 1 ? PLM_HABIT_HEAD : PLM_HABIT_SINGLE_LEAF;
-    if (!sketch->stem.count) return PLM_HABIT_ROSETTE;
-    const bool many = !sketch->scale.rises && (double)blades >= MANY_BLADES * (double)leafy;
-    const double least_strap = many ? STRAP_OF_MANY : sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE;
-    if (strap > least_strap * area) return PLM_HABIT_STRAP;
-    if (!many && slim_strap + tubes * area > STRAP_WITH_TUBES * area) return PLM_HABIT_STRAP;
-    const double least = most >= 3 ? COMPOUND_BLADES : COMPOUND_PAIRS;
-    return (double)blades >= least * (double)leafy ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
-}
 
 /* Where a leaf comes in the count. */
 typedef struct place {
@@ -309,7 +200,10 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
         if (status == PLM_OK) status = plm_side_groups_young(sketch, &groups, error);
     }
     if (status == PLM_OK) {
-        sketch->habit = habit != PLM_HABIT_UNKNOWN ? habit : guess_habit(sketch, &groups);
+        sketch->habit = habit;
+        if (habit == PLM_HABIT_UNKNOWN) status = plm_habit_guess(sketch, &groups, &sketch->habit, error);
+    }
+    if (status == PLM_OK) {
         /* Where the stem's line ended early, its rest is one foot of several petioles. */
         if (sketch->habit == PLM_HABIT_SIMPLE && sketch->stem.count)
             status = plm_side_groups_split(sketch, &groups, error);

@@ -239,6 +239,24 @@ static void many_blades_a_leaf_are_no_straps(void **unused)
     assert_int_equal(habit, PLM_HABIT_COMPOUND);
 }
 
+/* Noise as large as the rachises' radius makes all of this tomato's as thick as its stem, but its blades begin far from that. */
+static void blades_on_long_rachises_are_no_straps(void **unused)
+{
+    (void)unused;
+    plm_habit habit;
+    const label_score score = segment("tomato", 22005,
+                                      &(plm_scan_options){.scanner = PLM_SCANNER_RGBD,
+                                                          .points = 45000,
+                                                          .noise = 5e-4,
+                                                          .outliers = 0.005,
+                                                          .views = 12,
+                                                          .image_width = 1760,
+                                                          .seed = 22005},
+                                      &habit);
+    assert_int_equal(habit, PLM_HABIT_COMPOUND);
+    assert_true(score.f1 >= 0.9 && score.iou_mean >= 0.75);
+}
+
 /* Noise makes specks of blade on bare branches, which were petioles and straps with them. */
 static void bare_branches_bear_no_leaves(void **unused)
 {
@@ -291,6 +309,7 @@ int main(void)
                                        cmocka_unit_test(short_petioles_make_no_single_leaf),
                                        cmocka_unit_test(two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each),
                                        cmocka_unit_test(blades_on_one_foot_are_leaflets),
+                                       cmocka_unit_test(blades_on_long_rachises_are_no_straps),
                                        cmocka_unit_test(bare_branches_bear_no_leaves),
                                        cmocka_unit_test(round_straps_are_no_branches)};
     return cmocka_run_group_tests(tests, NULL, NULL);
