@@ -82,12 +82,13 @@ plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape
     if (!scratch.failed) {
         const float limit = (float)(radius * radius);
         const int64_t count = (int64_t)graph->count;
-        for (size_t i = 0; i < threads * graph->count; i++)
-            memcpy(at[i].xyz, graph->xyz[i % graph->count], sizeof at->xyz);
-#pragma omp parallel for schedule(dynamic, 256)
-        for (int64_t i = 0; i < count; i++) {
-            const size_t own = (size_t)thread_number() * graph->count;
-            ball(graph, (uint32_t)i, limit, at + own, queue + own, &shape[i]);
+#pragma omp parallel
+        {
+            node *own = at + (size_t)thread_number() * graph->count;
+            uint32_t *own_queue = queue + (size_t)thread_number() * graph->count;
+            for (size_t i = 0; i < graph->count; i++) memcpy(own[i].xyz, graph->xyz[i], sizeof own->xyz);
+#pragma omp for schedule(dynamic, 256)
+            for (int64_t i = 0; i < count; i++) ball(graph, (uint32_t)i, limit, own, own_queue, &shape[i]);
         }
     }
     plm_scratch_free(&scratch, NULL);

@@ -28,9 +28,10 @@ static const double MANY_BLADES = 1.55, STRAP_OF_MANY = 0.65;
  * no tear; without them more is asked for. */
 static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
 /* Of their length: blades of compound leaves that begin farther from the stem are on petioles or rachises, which noise makes look
- * thick, and more is asked for. Straps that thick feet tell begin at 0.42 at most, nearly all at less than a third (26 virtual ones
- * from depth cameras, 15 real ones); 200 virtual plants with petioles at 0.45 and more. Of these one tomato has 0.66 of straps, and a
- * real one whose leaves are so young that two or three stand on one foot, and are better parted as straps, 0.79. */
+ * thick; thick feet alone make straps of them only from so much evidence on (slimmer ones with tubes as before: they told a maize at
+ * 0.54). Straps that thick feet tell begin at 0.42 at most, nearly all at less than a third (26 virtual ones from depth cameras, 15
+ * real ones); 200 virtual plants with petioles at 0.45 and more. Two of those that begin beyond a half had thick feet: a tomato in
+ * noise (0.66), and a real one (0.79) so young that two or three leaves stand on one foot and are better parted as straps. */
 static const double ON_PETIOLES = 0.5, STRAP_ON_PETIOLES = 0.75;
 static const double BLADE_ENDS = 0.02; /* quantile of a blade's distances: some points are strays */
 
@@ -89,7 +90,7 @@ static bool is_bare(const plm_sketch *sketch)
     return (double)stem >= BARE_ALONE * all || has_slim_branches(sketch, sketch->working.count - stem);
 }
 
-/* Where blades begin, in their length, on the mean by area; 0 where there are none. */
+/* Where blades begin over how long they are, both weighed by area; 0 where there are none. */
 static plm_status find_blade_start(const plm_sketch *sketch, const plm_side_groups *groups, double *start,
                                    plm_error *error)
 {
@@ -113,7 +114,7 @@ static plm_status find_blade_start(const plm_sketch *sketch, const plm_side_grou
     return PLM_OK;
 }
 
-/* What the leaves of a plant with a stem look like, by area where they have feet. */
+/* What the leaves look like; evidence is weighed by area, of those that have feet. */
 typedef struct leaf_tally {
     size_t leafy, blades, most; /* groups with blades, their blades, those of the group with the most */
     double area, strap, slim_strap;
@@ -164,11 +165,11 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         const double least = tally.most >= 3 ? COMPOUND_BLADES : COMPOUND_PAIRS;
         const bool compound = (double)tally.blades >= least * (double)tally.leafy;
         const bool many = !sketch->scale.rises && (double)tally.blades >= MANY_BLADES * (double)tally.leafy;
-        *habit = compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
         double start = 0;
         const plm_status status = compound ? find_blade_start(sketch, groups, &start, error) : PLM_OK;
         if (status != PLM_OK) return status;
         const bool slim = !many && tally.slim_strap + tubes * tally.area > STRAP_WITH_TUBES * tally.area;
+        *habit = compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
         if (slim || have_thick_feet(sketch, &tally, many, start)) *habit = PLM_HABIT_STRAP;
     }
     return PLM_OK;

@@ -24,12 +24,15 @@ fail() {
     failures=$((failures + 1))
 }
 
-# build NAME CC CXX FLAGS ARITHMETIC
 wants() {
     case $wanted in *" $1 "*) return 0 ;; esac
     return 1
 }
+for build in $wanted; do
+    case $build in O0 | O2 | clang | fma | contract) ;; *) echo "floating: no build $build"; exit 2 ;; esac
+done
 
+# build NAME CC CXX FLAGS ARITHMETIC
 build() {
     cmake -S "$source" -B "$builds/$1" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_C_COMPILER="$2" -DCMAKE_CXX_COMPILER="$3" \
         -DCMAKE_C_FLAGS="$4" -DCMAKE_CXX_FLAGS="$4" "-DPLANTIMETER_ARITHMETIC=$5" -DPLANTIMETER_TESTS=OFF \
