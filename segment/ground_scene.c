@@ -11,6 +11,10 @@
 
 /* Radius of a pot over the size of all, and height over radius: where it is slimmer and longer, it may be a stem. */
 static const double SLIM = 0.045, LONG = 2;
+/* Patches below a pot, over all: a floor's rest below one that is seen all around, next to none (strays) below a wall that is hardly
+ * seen. A level leaf whose rim hangs down makes such a wall (coverage 0.58), with 0.036 below it, of its stem; 0.0007 at most below
+ * 20 pots, seen from 0.95 of all directions and more. */
+static const double BELOW = 0.1, BELOW_LEAST = 0.01, POT_COVERAGE = 0.55;
 
 /* ---- Colour --------------------------------------------------------------------------------------------------- */
 
@@ -140,7 +144,7 @@ static double accept_pot(const plm_ground_scene *s)
     const double cell = t->surfels->cell, top = pot->radius[pot->rows - 1], all = (double)t->surfels->count;
     /* A small ring is soon filled by leaves: it must be more complete, and even. */
     const double small = fmin(fmax((12 - top / cell) / 6, 0), 1);
-    if (pot->coverage < 0.55 + 0.25 * small || pot->scatter > 0.06 * top + 0.5 * cell) return 0;
+    if (pot->coverage < POT_COVERAGE + 0.25 * small || pot->scatter > 0.06 * top + 0.5 * cell) return 0;
     if (pot->lid < 0.15 && (pot->coverage < 0.85 || pot->scatter > 0.05 * top + 0.3 * cell)) return 0;
     double above = 0, below = 0, high = pot->rim;
     for (size_t k = 0; k < t->surfels->count; k++) {
@@ -151,7 +155,8 @@ static double accept_pot(const plm_ground_scene *s)
     /* The stem under a head is as round; no soil closes it. */
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
     if (top < SLIM * plm_norm(size) && pot->rim - pot->foot > LONG * top && pot->lid < 0.15) return 0;
-    if (above < fmax(20, 0.01 * all) || below > 0.1 * all) return 0;
+    const double rest = fmax(BELOW * (pot->coverage - POT_COVERAGE) / (1 - POT_COVERAGE), BELOW_LEAST);
+    if (above < fmax(20, 0.01 * all) || below > rest * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }
 

@@ -145,7 +145,8 @@ static void a_flat_rosette_is_no_ground(void **unused)
     assert_false(find_in_plant("arabidopsis", &scan, true).ground.found);
 }
 
-/* The lowest leaf of a head is flat, and the stem under it round; floaters lie above a single leaf as above soil. */
+/* The lowest leaf of a head is flat, and the stem under it round; floaters lie above a single leaf as above soil; the rim of a
+ * cucumber's lowest leaf hangs down like a wall around level soil, but its stem stands below that. */
 static void leaves_are_no_ground_and_a_stem_no_pot(void **unused)
 {
     (void)unused;
@@ -156,7 +157,15 @@ static void leaves_are_no_ground_and_a_stem_no_pot(void **unused)
         {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 405, .points = 45000}},
         {"lettuce", {.scanner = PLM_SCANNER_SPLAT, .seed = 305, .points = 60000, .noise = 5e-4, .outliers = 0.01}},
         {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 603, .points = 200000}},
-        {"single_leaf", {.scanner = PLM_SCANNER_SPLAT, .seed = 71, .points = 20000, .noise = 5e-4, .outliers = 0.01}}};
+        {"single_leaf", {.scanner = PLM_SCANNER_SPLAT, .seed = 71, .points = 20000, .noise = 5e-4, .outliers = 0.01}},
+        {"cucumber",
+         {.scanner = PLM_SCANNER_RGBD,
+          .seed = 23005,
+          .points = 45000,
+          .noise = 5e-4,
+          .outliers = 0.005,
+          .views = 12,
+          .image_width = 1760}}};
     for (size_t i = 0; i < COUNT(plant); i++)
         assert_false(find_in_plant(plant[i].kind, &plant[i].scan, true).ground.found);
 }
