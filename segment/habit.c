@@ -139,11 +139,10 @@ static leaf_tally count_leaves(const plm_sketch *sketch, const plm_side_groups *
     return tally;
 }
 
-/* Whether feet are as thick as the stem: straps have no petioles. start: find_blade_start, 0 if nothing is to be asked of it. */
-static bool have_thick_feet(const plm_sketch *sketch, const leaf_tally *tally, bool many, double start)
+/* Whether feet are as thick as the stem: straps have no petioles. */
+static bool have_thick_feet(const plm_sketch *sketch, const leaf_tally *tally, bool many)
 {
-    double least = many ? STRAP_OF_MANY : sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE;
-    if (start > ON_PETIOLES) least = fmax(least, STRAP_ON_PETIOLES);
+    const double least = many ? STRAP_OF_MANY : sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE;
     return tally->strap > least * tally->area;
 }
 
@@ -165,12 +164,15 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         const double least = tally.most >= 3 ? COMPOUND_BLADES : COMPOUND_PAIRS;
         const bool compound = (double)tally.blades >= least * (double)tally.leafy;
         const bool many = !sketch->scale.rises && (double)tally.blades >= MANY_BLADES * (double)tally.leafy;
-        double start = 0;
-        const plm_status status = compound ? find_blade_start(sketch, groups, &start, error) : PLM_OK;
-        if (status != PLM_OK) return status;
         const bool slim = !many && tally.slim_strap + tubes * tally.area > STRAP_WITH_TUBES * tally.area;
-        *habit = compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
-        if (slim || have_thick_feet(sketch, &tally, many, start)) *habit = PLM_HABIT_STRAP;
+        bool strap = slim || have_thick_feet(sketch, &tally, many);
+        if (strap && !slim && compound && tally.strap <= STRAP_ON_PETIOLES * tally.area) {
+            double start;
+            const plm_status status = find_blade_start(sketch, groups, &start, error);
+            if (status != PLM_OK) return status;
+            strap = start <= ON_PETIOLES;
+        }
+        *habit = strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
     }
     return PLM_OK;
 }

@@ -198,8 +198,8 @@ double plm_stem_nearest(const plm_stem_path *stem, const float xyz[3], plm_stem_
         const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
         const double w[3] = {xyz[0] - p[0], xyz[1] - p[1], xyz[2] - p[2]};
         const double length2 = plm_dot(d, d);
-        if (plm_dot(w, w) > 2.001 * (best + length2))
-            continue; /* its start is farther than the best and its length together */
+        /* Its start is farther than the best and its length together: (a + b)^2 <= 2 (a^2 + b^2), .001 for rounding. */
+        if (plm_dot(w, w) > 2.001 * (best + length2)) continue;
         double t = length2 > 0 ? plm_dot(w, d) / length2 : 0;
         t = t < 0 ? 0 : t > 1 ? 1 : t;
         const double r[3] = {w[0] - t * d[0], w[1] - t * d[1], w[2] - t * d[2]};
