@@ -42,6 +42,10 @@ void plm_stem_path_free(plm_stem_path *path);
 /** Angle (radians) between the directions of the path below and above node n. */
 double plm_stem_turn(const plm_stem_path *stem, size_t n);
 
+/** Arc length at which the upper half of the path turns down as sharply as no stem does: what follows is a way through leaves
+ * that touch. INFINITY: it does not. */
+double plm_stem_hairpin(const plm_stem_path *stem);
+
 /** The first node from arc length `from` on at which the path turns as it does where a way leaves the stem for a petiole;
  * 0 where there is none. */
 size_t plm_stem_kink(const plm_stem_path *stem, double from);

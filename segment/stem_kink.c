@@ -9,6 +9,7 @@
 
 static const double KINK = 0.21;             /* radians: a turn that tells a petiole from its stem */
 static const double KINK_AT_END = 0.25;      /* the same where the way ends before it has straightened again */
+static const double HAIRPIN = 1;             /* radians: a turn from up to down that no stem makes */
 static const double PLATEAU = 0.95;          /* of the largest turn: as large */
 static const double AROUND = 1.3;            /* points within so many radii (plus noise) of a straight line are on it */
 static const double PRESENT = 0.3;           /* of the points that the stem has on such a length: it goes on */
@@ -41,6 +42,15 @@ double plm_stem_turn(const plm_stem_path *stem, size_t n)
     direction(stem, n, -1, below);
     direction(stem, n, 1, above);
     return acos(fmax(-1, fmin(1, plm_dot(below, above))));
+}
+
+double plm_stem_hairpin(const plm_stem_path *stem)
+{
+    const double half = stem->count ? 0.5 * stem->along[stem->count - 1] : 0;
+    for (size_t n = ARM; n + ARM < stem->count; n++)
+        if (stem->along[n] > half && stem->node[n + ARM][2] < stem->node[n][2] && plm_stem_turn(stem, n) > HAIRPIN)
+            return stem->along[n];
+    return INFINITY;
 }
 
 size_t plm_stem_kink(const plm_stem_path *stem, double from)

@@ -100,10 +100,12 @@ plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *grou
     if (!value) return PLM_E_MEMORY;
     const double usual = usual_rachis(groups, end, petiole, value);
     plm_free(value);
+    const double hairpin = plm_stem_hairpin(&sketch->stem);
     double last = 0, first = INFINITY;
     for (size_t g = 0; g < groups->count; g++) {
         const plm_side_group *group = &groups->group[g];
-        if (group->has_foot && group->blades && !are_leaflets(group, usual)) last = fmax(last, group->along);
+        if (!group->has_foot || !group->blades || group->along > hairpin) continue;
+        if (!are_leaflets(group, usual)) last = fmax(last, group->along);
     }
     size_t leaflets = 0;
     for (size_t g = 0; g < groups->count; g++) {

@@ -66,6 +66,20 @@ static void the_stem_ends_below_the_leaflets_of_its_topmost_leaf(void **unused)
         0.9);
 }
 
+/* The way up led through a leaflet that touches, down to another leaf's petiole and up that one. */
+static void a_way_that_turns_down_has_left_the_stem(void **unused)
+{
+    (void)unused;
+    check_soybean(&(plm_scan_options){.scanner = PLM_SCANNER_RGBD,
+                                      .seed = 25005,
+                                      .points = 45000,
+                                      .noise = 5e-4,
+                                      .views = 12,
+                                      .outliers = 0.005,
+                                      .image_width = 1760},
+                  0.85);
+}
+
 /* Above the first leaves the scan has a gap, so that what is below is a piece of tube of its own. */
 static void a_stem_goes_on_below_a_gap(void **unused)
 {
@@ -160,6 +174,7 @@ int main(void)
         cmocka_unit_test(the_last_internode_is_no_petiole_of_a_young_leaf),
         cmocka_unit_test(a_way_into_a_rachis_goes_back_to_the_stem),
         cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
+        cmocka_unit_test(a_way_that_turns_down_has_left_the_stem),
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
     };
