@@ -1,5 +1,5 @@
 /* segment/forked_feet.c: where petioles of a rosette lean on each other near the core they make one foot, and where their
- * blades touch too, they seem one leaf. But between the two they are apart: so a foot that farther out is two tubes or
+ * blades touch too, they seem one leaf. But between the two they are apart: so a foot that farther out is two strands or
  * more, each of which leads to a blade, is as many feet. */
 #include "segment/forked_feet.h"
 
@@ -12,9 +12,11 @@
 
 static const double FIRST = 1.1, STEP = 0.5, LAST = 4.2; /* distances of the shells that are looked at, in R */
 static const double TUBE_BELOW = 0.7; /* share of tube on this side of a shell, at least: else a blade has begun */
-static const double TUBE_SHELL = 0.6; /* and of a piece of the shell that is a petiole */
-static const double APART = 0.8; /* of their middles, in R: the sides of one petiole are nearer, where it is torn */
-enum { PIECE_LEAST = 4 };        /* points of such a piece */
+static const double TUBE_SHELL =
+    0.6; /* and of a piece of the shell that is a petiole; one with less is the base of a blade */
+/* Of their middles, in R: the sides of one petiole are nearer, where it is torn, and so are those of one blade's base. */
+static const double APART = 0.8, BLADES_APART = 1.3;
+enum { PIECE_LEAST = 4 }; /* points of such a piece */
 
 /* A connected piece of the shell. */
 typedef struct piece {
@@ -35,7 +37,7 @@ typedef struct work {
     uint32_t *stack, *source, *tubes, *members;
     float *far;
     piece *piece;
-    int32_t *first; /* of each foot: its first piece that is a petiole; -1 */
+    int32_t *first; /* of each foot: its first piece that leads to a blade; -1 */
 } work;
 
 static plm_status start(work *w)
@@ -86,9 +88,14 @@ static void find_pieces(work *w, double low, double high)
         for (int axis = 0; axis < 3; axis++) w->piece[p].mean[axis] /= (double)w->piece[p].points;
 }
 
+static bool is_strand(const piece *p)
+{
+    return p->points >= PIECE_LEAST;
+}
+
 static bool is_petiole(const piece *p)
 {
-    return p->points >= PIECE_LEAST && (double)p->tubes >= TUBE_SHELL * (double)p->points;
+    return (double)p->tubes >= TUBE_SHELL * (double)p->points;
 }
 
 /* origin[]: the piece that is nearest to each point beyond low; only such as are numbered, if asked for. */
@@ -100,7 +107,7 @@ static plm_status walk_from(work *w, double low, bool numbered, plm_error *error
         w->allowed[i] = s->group[i] >= 0 && !(w->distance[i] < low);
         if (w->piece_of[i] < 0) continue;
         const piece *p = &w->piece[w->piece_of[i]];
-        if (numbered ? p->number >= 0 : is_petiole(p)) w->source[sources++] = i;
+        if (numbered ? p->number >= 0 : is_strand(p)) w->source[sources++] = i;
     }
     const plm_walk walk = {
         .source = w->source, .source_count = sources, .allowed = w->allowed, .distance = w->far, .origin = w->origin};
@@ -110,19 +117,20 @@ static plm_status walk_from(work *w, double low, bool numbered, plm_error *error
     return status;
 }
 
-/* Whether a piece is apart from the petioles of its foot that were taken before it. */
+/* Whether a piece is apart from those of its foot that were taken before it. */
 static bool is_apart(const work *w, const piece *own)
 {
-    const double least = APART * w->sketch->scale.radius;
+    const double R = w->sketch->scale.radius;
     for (const piece *p = w->piece + w->first[own->foot]; p < own; p++) {
         const double d[3] = {p->mean[0] - own->mean[0], p->mean[1] - own->mean[1], p->mean[2] - own->mean[2]};
         const bool is_taken = p->number >= 0 || p == w->piece + w->first[own->foot];
+        const double least = (is_petiole(p) && is_petiole(own) ? APART : BLADES_APART) * R;
         if (p->foot == own->foot && is_taken && plm_norm(d) < least) return false;
     }
     return true;
 }
 
-/* Petioles with blades of the same foot: all but the first become feet of their own. Gives whether there are any. */
+/* Pieces that lead to blades, of the same foot: all but the first become feet of their own. Gives whether there are any. */
 static bool number_pieces(work *w)
 {
     const plm_sketch *s = w->sketch;
@@ -135,7 +143,7 @@ static bool number_pieces(work *w)
     for (size_t f = 0; f < before; f++) w->first[f] = -1;
     for (size_t p = 0; p < w->pieces; p++) {
         piece *own = &w->piece[p];
-        if (!is_petiole(own) || own->blade < plm_blade_least(s)) continue;
+        if (!is_strand(own) || own->blade < plm_blade_least(s)) continue;
         if (w->first[own->foot] < 0) {
             w->first[own->foot] = (int32_t)p;
             continue;

@@ -23,7 +23,9 @@ static const double NOISE_RADII = 10;   /* R in sigmas, at least: a noisier ball
 static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
-static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette */
+static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette; ... */
+/* ... or for this where the smallest balls are so large a share of the size: they see little of short petioles. */
+static const double TUBE_COARSE = 0.045, COARSE = 0.03;
 /* Where the smallest balls find the longest tubes, the share of those that lies on a ring, at least (each at its best): 0.35 and more
  * over 90 clouds with tubes, 0.2 and less where balls of a few points on noisy sheets look long. */
 static const double TUBE_RING = 0.22;
@@ -163,7 +165,8 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.tube_length = best.tube_length;
     out.has_tubes = is_round && peak >= TUBE_LEAST * out.size;
     /* Tubes as short as a rosette's may not show round; long ones would. */
-    out.is_doubtful = !out.has_tubes && peak >= TUBE_DOUBTFUL * out.size && (is_round || peak < TUBE_LEAST * out.size);
+    const double doubtful = series[0].radius > COARSE * out.size ? TUBE_COARSE : TUBE_DOUBTFUL;
+    out.is_doubtful = !out.has_tubes && peak >= doubtful * out.size && (is_round || peak < TUBE_LEAST * out.size);
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;
     return status;

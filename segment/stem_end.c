@@ -1,5 +1,6 @@
 /* segment/stem_end.c: where the stem ends. The way through thick tubes may run on into the petiole of the topmost leaf:
  * then the blades at its end seem to sit on the stem without the petioles that the other leaves have. */
+#include "segment/rosette_stem.h"
 #include "segment/side_groups.h"
 #include "segment/stem_fit.h"
 #include "segment/stem_rachis.h"
@@ -23,9 +24,6 @@ static const double DROP = 0.25;      /* ... losses of radius that count as one 
 static const double EVIDENCE_LEAST = 0.8; /* less tells nothing: ... */
 static const double AS_THICK = 0.88;      /* ... then a stretch with so much of the radius that the path has ... */
 static const double THICK_BELOW = 6;      /* ... over so many R below is the stem's last internode */
-/* Of the size: a stem that rises less is none. 0.22 and more on stems, virtual and real, while ways along petioles of rosettes
- * in noise, cut where they thin, end at 0.1 or less. */
-static const double RISE_LEFT = 0.15;
 
 static double tube_of_blade(const plm_side_group *group)
 {
@@ -202,15 +200,6 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
     plm_sketch_mark_stem(sketch);
 }
 
-/* The way that was traced rises enough, but what is left of it may not: then it ran up petioles of a rosette. */
-static void forget_low_stem(plm_sketch *sketch)
-{
-    const plm_stem_path *stem = &sketch->stem;
-    if (stem->node[stem->count - 1][2] - stem->node[0][2] >= RISE_LEFT * sketch->scale.size) return;
-    plm_stem_path_free(&sketch->stem);
-    for (size_t i = 0; i < sketch->working.count; i++) sketch->is_stem[i] = false;
-}
-
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
@@ -229,6 +218,5 @@ plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
         if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
         plm_side_groups_free(&top.groups);
     }
-    if (status == PLM_OK) forget_low_stem(sketch);
-    return status;
+    return status == PLM_OK ? plm_rosette_has_no_stem(sketch, error) : status;
 }

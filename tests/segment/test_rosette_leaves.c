@@ -1,0 +1,53 @@
+/* Rosettes are told as such, where a steep leaf looks like a stem, and where the petioles are so short and few points that they hardly
+ * look like tubes. Their leaves are told apart where they lie on each other soon after the core. */
+#include "support/test.h"
+
+#include "support/label_score.h"
+#include "support/virtual_plant.h"
+
+#define DEPTH_CAMERA .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = 5e-4, .views = 12, .outliers = 0.005
+
+/* axis: intersection over union of stem and petioles. */
+static void check(const plm_scan_options *options, double f1, double axis)
+{
+    plm_error error = {0};
+    virtual_plant made = virtual_plant_make("arabidopsis", 0, options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    label_score score;
+    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
+                                  &error));
+    print_message("%d: habit %s, %zu leaves of %zu, F1 %.3f, axis %.3f\n", (int)options->seed,
+                  plm_habit_name(made.found.habit), score.leaves_found, score.leaves, score.f1, score.iou_axis);
+    assert_int_equal(made.found.habit, PLM_HABIT_ROSETTE);
+    assert_true(score.f1 >= f1);
+    assert_true(score.iou_axis >= axis);
+    virtual_plant_free(&made);
+}
+
+static void the_way_along_a_steep_leaf_is_no_stem(void **unused)
+{
+    (void)unused;
+    check(&(plm_scan_options){DEPTH_CAMERA, .seed = 302, .image_width = 1160}, 0.95, 0.8);
+}
+
+static void short_petioles_of_few_points_are_tubes(void **unused)
+{
+    (void)unused;
+    check(&(plm_scan_options){DEPTH_CAMERA, .seed = 25004, .image_width = 1560}, 0.9, 0.5);
+}
+
+static void leaves_part_where_one_blade_begins_before_the_other(void **unused)
+{
+    (void)unused;
+    check(&(plm_scan_options){DEPTH_CAMERA, .seed = 18103, .image_width = 1360}, 0.99, 0.7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_way_along_a_steep_leaf_is_no_stem),
+        cmocka_unit_test(short_petioles_of_few_points_are_tubes),
+        cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
