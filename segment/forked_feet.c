@@ -14,7 +14,8 @@ static const double FIRST = 1.1, STEP = 0.5, LAST = 4.2; /* distances of the she
 static const double TUBE_BELOW = 0.7; /* share of tube on this side of a shell, at least: else a blade has begun */
 static const double TUBE_SHELL =
     0.6; /* and of a piece of the shell that is a petiole; one with less is the base of a blade */
-/* Of their middles, in R: the sides of one petiole are nearer, where it is torn, and so are those of one blade's base. */
+/* Of their middles, in R: the sides of one petiole are nearer, where it is torn, and so are those of one blade's base beside its
+ * petiole. Two bases may be one blade that a gap parts. */
 static const double APART = 0.8, BLADES_APART = 1.3;
 enum { PIECE_LEAST = 4 }; /* points of such a piece */
 
@@ -124,13 +125,14 @@ static bool is_apart(const work *w, const piece *own)
     for (const piece *p = w->piece + w->first[own->foot]; p < own; p++) {
         const double d[3] = {p->mean[0] - own->mean[0], p->mean[1] - own->mean[1], p->mean[2] - own->mean[2]};
         const bool is_taken = p->number >= 0 || p == w->piece + w->first[own->foot];
-        const double least = (is_petiole(p) && is_petiole(own) ? APART : BLADES_APART) * R;
+        const int petioles = is_petiole(p) + is_petiole(own);
+        const double least = petioles == 2 ? APART * R : petioles ? BLADES_APART * R : INFINITY;
         if (p->foot == own->foot && is_taken && plm_norm(d) < least) return false;
     }
     return true;
 }
 
-/* Pieces that lead to blades, of the same foot: all but the first become feet of their own. Gives whether there are any. */
+/* Pieces that lead to blades, of the same foot: those that are apart from the ones before them become feet of their own. Gives whether there are any. */
 static bool number_pieces(work *w)
 {
     const plm_sketch *s = w->sketch;

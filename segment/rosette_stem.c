@@ -10,11 +10,11 @@
 /* Of the size: a stem that rises less is none. 0.22 and more on stems, virtual and real, while ways along petioles of rosettes
  * in noise, cut where they thin, end at 0.1 or less. */
 static const double RISE_LEFT = 0.15;
-/* A way shorter than this share of the size, with so many leaves (CROWD) about its base (in R) that reach nearly as far, and so few
- * beyond (HALVES), leads along one of a rosette's steep leaves and parts its blade. Stems as short have one leaf there at most (300
- * clouds, virtual and real); such ways had five and seven. */
-static const double SHORT_WAY = 0.5, CROWN = 2.5, AS_FAR = 1.2;
-enum { CROWD = 4, HALVES = 2 };
+/* A way shorter than this share of the size, with so many leaves (CROWD) about its base (in R) of which one reaches nearly as far
+ * and each of the others half as far, and so few beyond, leads along one of a rosette's steep leaves and parts its blade. Stems as
+ * short have one leaf there at most (300 clouds, virtual and real); such ways had five and seven. */
+static const double SHORT_WAY = 0.5, CROWN = 2.5, AS_FAR = 1 / 1.2, HALF_AS_FAR = 0.5;
+enum { CROWD = 4, BEYOND_MOST = 2 };
 
 /* Whether the way is that of a leaf among those of a rosette. */
 static plm_status is_leaf_way(plm_sketch *sketch, bool *answer, plm_error *error)
@@ -23,32 +23,35 @@ static plm_status is_leaf_way(plm_sketch *sketch, bool *answer, plm_error *error
     *answer = false;
     if (length >= SHORT_WAY * sketch->scale.size) return PLM_OK;
     plm_side_groups groups;
-    const plm_status status = plm_side_groups_find(sketch, 1, &groups, error);
+    plm_status status = plm_side_groups_find(sketch, 1, &groups, error);
     if (status != PLM_OK) return status;
-    size_t about = 0, beyond = 0;
-    for (size_t g = 0; g < groups.count; g++) {
-        if (!groups.group[g].has_foot || !groups.group[g].blades) continue;
-        if (groups.group[g].along < crown)
-            about++;
-        else
-            beyond++;
-    }
-    double reach = 0;
-    for (size_t i = 0; i < sketch->working.count; i++) {
+    float *reach = plm_alloc_zero(groups.count + 1, sizeof *reach, error); /* of each group, along the plant */
+    if (!reach) status = PLM_E_MEMORY;
+    for (size_t i = 0; i < sketch->working.count && reach; i++) {
         const int32_t g = sketch->group[i];
-        const bool counts = g >= 0 && groups.group[g].blades && groups.group[g].along < crown;
-        if (counts && isfinite(groups.distance[i])) reach = fmax(reach, groups.distance[i]);
+        if (g >= 0 && isfinite(groups.distance[i])) reach[g] = fmaxf(reach[g], groups.distance[i]);
     }
+    size_t about = 0, beyond = 0;
+    double farthest = 0;
+    for (size_t g = 0; g < groups.count && reach; g++) {
+        if (!groups.group[g].has_foot || !groups.group[g].blades) continue;
+        const bool is_about = groups.group[g].along < crown;
+        if (is_about) farthest = fmax(farthest, reach[g]);
+        about += is_about && reach[g] >= HALF_AS_FAR * length;
+        beyond += !is_about;
+    }
+    plm_free(reach);
     plm_side_groups_free(&groups);
-    *answer = about >= CROWD && beyond <= HALVES && length < AS_FAR * reach;
-    return PLM_OK;
+    *answer = about >= CROWD && beyond <= BEYOND_MOST && farthest >= AS_FAR * length;
+    return status;
 }
 
-plm_status plm_rosette_has_no_stem(plm_sketch *sketch, plm_error *error)
+plm_status plm_stem_drop_false(plm_sketch *sketch, plm_habit habit, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
     bool is_none = stem->node[stem->count - 1][2] - stem->node[0][2] < RISE_LEFT * sketch->scale.size;
-    const plm_status status = is_none ? PLM_OK : is_leaf_way(sketch, &is_none, error);
+    plm_status status = PLM_OK;
+    if (!is_none && habit == PLM_HABIT_UNKNOWN) status = is_leaf_way(sketch, &is_none, error);
     if (status != PLM_OK || !is_none) return status;
     plm_stem_path_free(&sketch->stem);
     for (size_t i = 0; i < sketch->working.count; i++) sketch->is_stem[i] = false;

@@ -112,7 +112,7 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     if (status == PLM_OK && may_have_stem(options->habit) && !(try_tubes && sketch->scale.is_doubtful))
         status = plm_sketch_stem(sketch, error); /* doubtful tubes are petioles of a rosette, or none */
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
-    if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, error);
+    if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, options->habit, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_leaves(sketch, options->habit, error);
     if (status == PLM_OK) status = plm_sketch_strays(sketch, error);

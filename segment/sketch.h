@@ -60,8 +60,9 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
 /** The same for plants whose leaves may be as thick as the stem: the straightest way up from the base. */
 plm_status plm_sketch_upright_stem(plm_sketch *sketch, plm_error *error);
 
-/** Takes back what of the path is the petiole of the topmost leaf. */
-plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error);
+/** Takes back what of the path is the petiole of the topmost leaf, and the whole of it where there is no stem (rosettes). habit: what
+ * the user says. */
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_habit habit, plm_error *error);
 
 /** Writes is_stem from the path. */
 void plm_sketch_mark_stem(plm_sketch *sketch);

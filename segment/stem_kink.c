@@ -48,7 +48,8 @@ double plm_stem_hairpin(const plm_stem_path *stem)
 {
     const double half = stem->count ? 0.5 * stem->along[stem->count - 1] : 0;
     for (size_t n = ARM; n + ARM < stem->count; n++)
-        if (stem->along[n] > half && stem->node[n + ARM][2] < stem->node[n][2] && plm_stem_turn(stem, n) > HAIRPIN)
+        if (stem->along[n] > half && stem->node[n][2] > stem->node[n - ARM][2] &&
+            stem->node[n][2] > stem->node[n + ARM][2] && plm_stem_turn(stem, n) > HAIRPIN)
             return stem->along[n];
     return INFINITY;
 }

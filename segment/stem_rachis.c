@@ -1,5 +1,6 @@
 /* segment/stem_rachis.c: the leaflets of a compound leaf seem to sit on the stem where the way up ran on into their rachis: beyond
- * the last leaf that has a rachis of its own nothing but single blades hangs on the way, at short tubes if at any. */
+ * the last leaf that has a rachis of its own nothing but single blades hangs on the way, at short tubes if at any. Where the way
+ * turns down it has gone through leaflets that touch, and whatever hangs on it from there on is no leaf on the stem. */
 #include "segment/stem_rachis.h"
 
 #include "cloud/linear.h"
@@ -98,9 +99,9 @@ plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *grou
     *done = false;
     float *value = plm_alloc(groups->count + 1, sizeof *value, error);
     if (!value) return PLM_E_MEMORY;
-    const double usual = usual_rachis(groups, end, petiole, value);
-    plm_free(value);
     const double hairpin = plm_stem_hairpin(&sketch->stem);
+    const double usual = usual_rachis(groups, fmin(end, hairpin), petiole, value);
+    plm_free(value);
     double last = 0, first = INFINITY;
     for (size_t g = 0; g < groups->count; g++) {
         const plm_side_group *group = &groups->group[g];

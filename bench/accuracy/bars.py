@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """The accuracy bars of the project against runs of `plantimeter measure` with its own labels.
 
-    bars.py RUN=TRUTH_FOLDER... [--worst N] [--kinds]
+    bars.py RUN=TRUTH_FOLDER... [--worst N] [--kinds] [--noise LEAST MOST]
 
 Each RUN holds traits.csv and PLANT.labelled.ply, its TRUTH_FOLDER what `plantimeter simulate` writes. Plants of all
 runs are taken together by scan mode. Prints a line a bar: what was measured, the bar, and whether it holds; with
---worst the N worst values of each, with --kinds a column a kind. Two bars are for part of the organs: petioles from
+--worst the N worst values of each, with --kinds a column a kind, with --noise only of plants at whose distance the
+noise of the scanner has an SD (mm) from LEAST up to MOST: depth cameras see large plants from farther off. Two bars are for part of the organs: petioles from
 20 mm of true length up (in noise; the median tells of shorter ones) and stems of 2 to 4 mm.
 """
 import argparse
@@ -58,7 +59,12 @@ def add_traits(truth, scores, mode, out):
                 out[(mode, bar)].append(row)
 
 
-def read_run(run, folder, out):
+def noise_at_plant(scan):
+    """SD in mm at the plant's distance; the scanner's own where it does not grow with distance."""
+    return 1e3 * scan.get("sigma_at_plant", scan.get("sigma", 0))
+
+
+def read_run(run, folder, noise, out):
     with open(os.path.join(folder, "truth.json")) as file:
         index = json.load(file)
     rows = score.read_traits(run)
@@ -70,6 +76,8 @@ def read_run(run, folder, out):
             continue
         with open(os.path.join(folder, case["truth"])) as file:
             truth = json.load(file)
+        if noise and not noise[0] <= noise_at_plant(truth["scan"]) < noise[1]:
+            continue
         labels = score.score_labels(case, run, folder)
         count = rows[plant].get(("plant", "", "leaf_count"))
         found = int(float(count["value"])) if count and count["value"] else -1
@@ -112,10 +120,11 @@ def main():
     parser.add_argument("runs", nargs="+", metavar="RUN=TRUTH_FOLDER")
     parser.add_argument("--worst", type=int, default=0)
     parser.add_argument("--kinds", action="store_true")
+    parser.add_argument("--noise", nargs=2, type=float, metavar=("LEAST", "MOST"))
     options = parser.parse_args()
     out, missed = defaultdict(list), 0
     for pair in options.runs:
-        read_run(*pair.split("="), out)
+        read_run(*pair.split("="), options.noise, out)
     for mode_number, mode in enumerate(MODES):
         kinds = sorted({r[3] for key, rows in out.items() if key[0] == mode for r in rows})
         for bar, (name, sign, *bars) in BARS.items():

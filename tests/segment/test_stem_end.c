@@ -167,6 +167,35 @@ static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
     assert_false(done);
 }
 
+enum { UP, BENT, DOWN, ASIDE };
+
+/* Arc length, in mm, at which a path of three legs of 40 mm turns down sharply; 0: it does not. */
+static double hairpin_of(int first, int second, int third)
+{
+    static const double out[4][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {0.6, 0, -0.8}, {1, 0, 0}};
+    static double node[NODES][3], radius[NODES], along[NODES];
+    const int leg[3] = {first, second, third};
+    plm_stem_path stem = {.node = node, .radius = radius, .along = along};
+    double from[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        add_nodes(&stem, from, out[leg[k]], 0.04, 2e-3);
+        for (int a = 0; a < 3; a++) from[a] += 0.04 * out[leg[k]][a];
+    }
+    const double at = plm_stem_hairpin(&stem);
+    return isfinite(at) ? 1e3 * at : 0;
+}
+
+static void only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin(void **unused)
+{
+    (void)unused;
+    const double at = hairpin_of(UP, BENT, DOWN);
+    assert_true(at > 70 && at < 82);
+    assert_true(hairpin_of(UP, BENT, ASIDE) == 0);
+    assert_true(hairpin_of(UP, DOWN, DOWN) == 0);
+    assert_true(hairpin_of(DOWN, DOWN, ASIDE) == 0); /* a hanging stem that turns aside, ... */
+    assert_true(hairpin_of(DOWN, DOWN, UP) == 0);    /* ... or up */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -176,6 +205,7 @@ int main(void)
         cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
         cmocka_unit_test(a_way_that_turns_down_has_left_the_stem),
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
+        cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
