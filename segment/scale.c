@@ -24,8 +24,9 @@ static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tel
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
 static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette; ... */
-/* ... or for this where the smallest balls are so large a share of the size: they see little of short petioles. */
-static const double TUBE_COARSE = 0.045, COARSE = 0.03;
+/* ... or for this where the smallest balls are so large a share of the size (COARSE), and the noise of them (BLUR), that they see little of
+ * short petioles: noise over radius is 0.1 and more in small rosettes, 0.02 in heads of a few thousand points. */
+static const double TUBE_BLURRED = 0.045, COARSE = 0.03, BLUR = 0.08;
 /* Where the smallest balls find the longest tubes, the share of those that lies on a ring, at least (each at its best): 0.35 and more
  * over 90 clouds with tubes, 0.2 and less where balls of a few points on noisy sheets look long. */
 static const double TUBE_RING = 0.22;
@@ -165,7 +166,8 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.tube_length = best.tube_length;
     out.has_tubes = is_round && peak >= TUBE_LEAST * out.size;
     /* Tubes as short as a rosette's may not show round; long ones would. */
-    const double doubtful = series[0].radius > COARSE * out.size ? TUBE_COARSE : TUBE_DOUBTFUL;
+    out.is_blurred = series[0].radius > COARSE * out.size && series[0].flat_noise > BLUR * series[0].radius;
+    const double doubtful = out.is_blurred ? TUBE_BLURRED : TUBE_DOUBTFUL;
     out.is_doubtful = !out.has_tubes && peak >= doubtful * out.size && (is_round || peak < TUBE_LEAST * out.size);
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;

@@ -15,6 +15,8 @@ typedef struct plm_scale {
     bool has_tubes;     /**< long enough, and with enough of them on rings */
     bool
         is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well; then has_tubes is false as found here */
+    bool
+        is_blurred; /**< points are so few and noisy for the size that petioles as short as a rosette's hardly show as tubes */
     bool rises; /**< tube length still grew at the largest R: leaves may pass as stems */
 } plm_scale;
 

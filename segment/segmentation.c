@@ -109,8 +109,9 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     plm_status status = plm_sketch_make(xyz, count, options->point_budget, try_tubes, sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(sketch, error);
-    if (status == PLM_OK && may_have_stem(options->habit) && !(try_tubes && sketch->scale.is_doubtful))
-        status = plm_sketch_stem(sketch, error); /* doubtful tubes are petioles of a rosette, or none */
+    /* What tubes a blurred plant shows are petioles of a rosette, or none. */
+    const bool stemless = try_tubes && sketch->scale.is_doubtful && sketch->scale.is_blurred;
+    if (status == PLM_OK && may_have_stem(options->habit) && !stemless) status = plm_sketch_stem(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, options->habit, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
