@@ -30,6 +30,28 @@ static void the_way_along_a_steep_leaf_is_no_stem(void **unused)
     check(&(plm_scan_options){DEPTH_CAMERA, .seed = 302, .image_width = 1160}, 0.95, 0.8);
 }
 
+/* A user who says that the plant has a stem is believed. */
+static void the_habit_that_is_asked_for_keeps_the_way(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    virtual_plant made =
+        virtual_plant_make("arabidopsis", 0, &(plm_scan_options){DEPTH_CAMERA, .seed = 302, .image_width = 1160});
+    const size_t count = made.scan.cloud.count;
+    bool *keep = calloc(count, sizeof *keep);
+    assert_non_null(keep);
+    for (size_t i = 0; i < count; i++) keep[i] = made.found.label[i] != PLM_LABEL_OTHER;
+    plm_segmentation found;
+    const plm_segment_options simple = {.habit = PLM_HABIT_SIMPLE};
+    assert_ok(plm_segment(&made.scan.cloud, NULL, keep, &simple, &found, &error));
+    size_t stem = 0;
+    for (size_t i = 0; i < count; i++) stem += found.label[i] == PLM_LABEL_STEM;
+    assert_true(stem > 100);
+    plm_segmentation_free(&found);
+    free(keep);
+    virtual_plant_free(&made);
+}
+
 static void short_petioles_of_few_points_are_tubes(void **unused)
 {
     (void)unused;
@@ -46,6 +68,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_way_along_a_steep_leaf_is_no_stem),
+        cmocka_unit_test(the_habit_that_is_asked_for_keeps_the_way),
         cmocka_unit_test(short_petioles_of_few_points_are_tubes),
         cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
     };
