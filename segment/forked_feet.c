@@ -12,8 +12,7 @@
 
 static const double FIRST = 1.1, STEP = 0.5, LAST = 4.2; /* distances of the shells that are looked at, in R */
 static const double TUBE_BELOW = 0.7; /* share of tube on this side of a shell, at least: else a blade has begun */
-static const double TUBE_SHELL =
-    0.6; /* and of a piece of the shell that is a petiole; one with less is the base of a blade */
+static const double TUBE_SHELL = 0.6; /* and of a piece of the shell that is a petiole; else it is a blade's base */
 /* Of their middles, in R: the sides of one petiole are nearer, where it is torn, and so are those of one blade's base beside its
  * petiole. Two bases may be one blade that a gap parts. */
 static const double APART = 0.8, BLADES_APART = 1.3;
@@ -132,7 +131,8 @@ static bool is_apart(const work *w, const piece *own)
     return true;
 }
 
-/* Pieces that lead to blades, of the same foot: those that are apart from the ones before them become feet of their own. Gives whether there are any. */
+/* Pieces that lead to blades, of the same foot: those that are apart from the ones before them become feet of their own.
+ * Gives whether there are any. */
 static bool number_pieces(work *w)
 {
     const plm_sketch *s = w->sketch;

@@ -4,8 +4,8 @@
 
 #include "segment/sketch.h"
 
-/** Takes the stem off a sketch that has one where its way hardly rises or, if the user did not say what the plant is, leads along a
- * leaf among those of a rosette. Writes sketch->group. PLM_E_MEMORY. */
+/** Takes the stem off a sketch that has one where its way hardly rises or, where habit (what the user says) is
+ * unknown, leads along a leaf among those of a rosette. Writes sketch->group. PLM_E_MEMORY. */
 plm_status plm_stem_drop_false(plm_sketch *sketch, plm_habit habit, plm_error *error);
 
 #endif

@@ -15,9 +15,8 @@ typedef struct plm_scale {
     bool has_tubes;     /**< long enough, and with enough of them on rings */
     bool
         is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well; then has_tubes is false as found here */
-    bool
-        is_blurred; /**< points are so few and noisy for the size that petioles as short as a rosette's hardly show as tubes */
-    bool rises; /**< tube length still grew at the largest R: leaves may pass as stems */
+    bool is_blurred; /**< so few and noisy points for the size that a rosette's petioles hardly show as tubes */
+    bool rises;      /**< tube length still grew at the largest R: leaves may pass as stems */
 } plm_scale;
 
 /** Finds the scale of count points (offsets near their middle; thinned to some 10^4 to 10^5 points, for the time).

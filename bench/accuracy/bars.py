@@ -6,8 +6,9 @@
 Each RUN holds traits.csv and PLANT.labelled.ply, its TRUTH_FOLDER what `plantimeter simulate` writes. Plants of all
 runs are taken together by scan mode. Prints a line a bar: what was measured, the bar, and whether it holds; with
 --worst the N worst values of each, with --kinds a column a kind, with --noise only of plants at whose distance the
-noise of the scanner has an SD (mm) from LEAST up to MOST: depth cameras see large plants from farther off. Two bars are for part of the organs: petioles from
-20 mm of true length up (in noise; the median tells of shorter ones) and stems of 2 to 4 mm.
+noise of the scanner has an SD (mm) from LEAST up to MOST: depth cameras see large plants from farther off. Two bars
+are for part of the organs: petioles from 20 mm of true length up (in noise; the median tells of shorter ones) and
+stems of 2 to 4 mm.
 """
 import argparse
 import json

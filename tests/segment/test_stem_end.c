@@ -77,7 +77,7 @@ static void a_way_that_turns_down_has_left_the_stem(void **unused)
                                       .views = 12,
                                       .outliers = 0.005,
                                       .image_width = 1760},
-                  0.85);
+                  0.9);
 }
 
 /* Above the first leaves the scan has a gap, so that what is below is a piece of tube of its own. */
