@@ -279,7 +279,8 @@ static plm_status find_groups(work *w, plm_error *error)
             if (alive[f]) judge(w, (int32_t)f, &w->out->group[f]);
     }
     if (status == PLM_OK && !w->sketch->stem.count && w->sketch->scale.has_tubes) status = split_forks(w, &feet, error);
-    if (status == PLM_OK) status = plm_touch_cut(w->sketch, w->sketch->group, w->out->distance, error);
+    if (status == PLM_OK)
+        status = plm_touch_cut(w->sketch, w->blade_cost > 1, w->out->distance, w->sketch->group, error);
     if (status == PLM_OK) status = add_loose_groups(w, feet, error);
     return status == PLM_OK ? find_blades(w, error) : status;
 }

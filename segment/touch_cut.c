@@ -14,9 +14,11 @@
 static const double ROOT = 0.8;    /* of a border's least distance from the trunk: nearer, the giver keeps its points */
 static const double GAIN = 0.5;    /* of what holds across the present border, at most */
 static const double LEAST_CUT = 5; /* in edges of one cell: a border of less is a touch */
+/* Of a leaflet's point that changes its leaf, in edges, over what holds across the present border: that grows with the leaflets'
+ * width, as their area does with its square. */
+static const double PRICE = 6;
+static const double WORTH = 0.75; /* of what holds across the present border, the new one's edges and prices at most */
 static const float SATURATED = 1e-6f;
-
-enum { SINK = -1, INNER = 0, SOURCE = 1 };
 
 /* Two organs that border on each other within blades. */
 typedef struct organ_border {
@@ -33,8 +35,8 @@ typedef struct net {
     uint32_t *node;              /* of a point, UINT32_MAX outside of the two organs */
     uint32_t *first, *to, *twin; /* arcs of a node, where they lead, and the arc back */
     float *left;                 /* what an arc still holds */
-    int8_t *side;
-    int32_t *level; /* steps from the source, -1 where none leads */
+    float *from, *into;          /* what a node still takes from the source and gives to the sink */
+    int32_t *level;              /* steps from the source, -1 where none leads */
     uint32_t *next, *queue, *path;
 } net;
 
@@ -47,7 +49,8 @@ static plm_status net_start(net *n, plm_scratch *scratch)
     n->to = plm_scratch_take(scratch, arcs + 1, sizeof *n->to);
     n->twin = plm_scratch_take(scratch, arcs + 1, sizeof *n->twin);
     n->left = plm_scratch_take(scratch, arcs + 1, sizeof *n->left);
-    n->side = plm_scratch_take(scratch, count, sizeof *n->side);
+    n->from = plm_scratch_take(scratch, count, sizeof *n->from);
+    n->into = plm_scratch_take(scratch, count, sizeof *n->into);
     n->level = plm_scratch_take(scratch, count, sizeof *n->level);
     n->next = plm_scratch_take(scratch, count, sizeof *n->next);
     n->queue = plm_scratch_take(scratch, count, sizeof *n->queue);
@@ -119,16 +122,14 @@ static bool find_levels(net *n)
     size_t head = 0, tail = 0;
     bool reached = false;
     for (uint32_t k = 0; k < n->nodes; k++) {
-        n->level[k] = n->side[k] == SOURCE ? 0 : -1;
+        n->level[k] = n->from[k] > SATURATED ? 0 : -1;
         n->next[k] = n->first[k];
-        if (n->side[k] == SOURCE) n->queue[tail++] = k;
+        if (n->level[k] == 0) n->queue[tail++] = k;
     }
     while (head < tail) {
         const uint32_t k = n->queue[head++];
-        if (n->side[k] == SINK) {
-            reached = true;
-            continue;
-        }
+        reached = reached || n->into[k] > SATURATED;
+        if (isinf(n->into[k])) continue;
         for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
             if (n->level[n->to[e]] < 0 && n->left[e] > SATURATED) {
                 n->level[n->to[e]] = n->level[k] + 1;
@@ -138,12 +139,12 @@ static bool find_levels(net *n)
     return reached;
 }
 
-/* A way from a node of the source to the sink, a level a step: its length, 0 if there is none. */
-static size_t find_way(net *n, uint32_t start)
+/* A way from a node of the source to the sink, a level a step. */
+static bool find_way(net *n, uint32_t start, size_t *length)
 {
     size_t depth = 0;
     uint32_t here = start;
-    while (n->side[here] != SINK) {
+    while (!(n->into[here] > SATURATED)) {
         uint32_t *e = &n->next[here];
         while (*e < n->first[here + 1] && !(n->left[*e] > SATURATED && n->level[n->to[*e]] == n->level[here] + 1))
             (*e)++;
@@ -151,22 +152,26 @@ static size_t find_way(net *n, uint32_t start)
             n->path[depth++] = *e;
             here = n->to[*e];
         } else {
-            if (!depth) return 0;
+            if (!depth) return false;
             here = n->to[n->twin[n->path[--depth]]];
             n->next[here]++;
         }
     }
-    return depth;
+    *length = depth;
+    return true;
 }
 
-static double push(net *n, size_t depth)
+static double push(net *n, uint32_t start, size_t depth)
 {
-    float least = INFINITY;
+    const uint32_t end = depth ? n->to[n->path[depth - 1]] : start;
+    float least = fminf(n->from[start], n->into[end]);
     for (size_t k = 0; k < depth; k++) least = fminf(least, n->left[n->path[k]]);
     for (size_t k = 0; k < depth; k++) {
         n->left[n->path[k]] -= least;
         n->left[n->twin[n->path[k]]] += least;
     }
+    n->from[start] -= least;
+    n->into[end] -= least;
     return least;
 }
 
@@ -177,7 +182,7 @@ static double find_flow(net *n, double limit)
     double flow = 0;
     while (flow <= limit && find_levels(n))
         for (uint32_t k = 0; k < n->nodes; k++)
-            for (size_t depth; n->side[k] == SOURCE && (depth = find_way(n, k)) > 0;) flow += push(n, depth);
+            for (size_t depth; n->from[k] > SATURATED && find_way(n, k, &depth);) flow += push(n, k, depth);
     return flow;
 }
 
@@ -228,8 +233,10 @@ static neck find_neck(net *n, const organ_border *border, int giver, const float
     for (size_t k = 0; k < n->nodes; k++) {
         const uint32_t i = n->point[k];
         const bool is_root = distance[i] < ROOT * border->nearest[giver];
-        n->side[k] = n->owner[i] != border->organ[giver] ? SINK : is_root ? SOURCE : INNER;
-        rooted = rooted || n->side[k] == SOURCE;
+        const bool gives = n->owner[i] == border->organ[giver];
+        n->from[k] = gives && is_root ? INFINITY : 0;
+        n->into[k] = gives ? 0 : INFINITY;
+        rooted = rooted || n->from[k] > 0;
     }
     if (!rooted) return (neck){INFINITY, false};
     fill(n);
@@ -250,11 +257,33 @@ static bool is_better(const plm_sketch *sketch, const neck *a, const neck *b)
     return a->holds < b->holds;
 }
 
-static void move_border(net *n, const organ_border *border, const float *distance)
+/* Between compound leaves the neck may be a rachis, with leaflets on both sides of it. So every point that changes its leaf has a
+ * price, and the cheapest border of all is taken (Greig, Porteous and Seheult 1989), if it saves enough of what the present one
+ * holds. */
+static void move_leaflets(net *n, const organ_border *border, const float *distance, double present)
+{
+    const float price = (float)(PRICE / present);
+    for (size_t k = 0; k < n->nodes; k++) {
+        const uint32_t i = n->point[k];
+        const int side = n->owner[i] == border->organ[1];
+        const float cost = distance[i] < ROOT * border->nearest[side] ? INFINITY : price;
+        n->from[k] = side ? 0 : cost;
+        n->into[k] = side ? cost : 0;
+    }
+    fill(n);
+    if (find_flow(n, WORTH * present) > WORTH * present) return;
+    for (size_t k = 0; k < n->nodes; k++) n->owner[n->point[k]] = border->organ[n->level[k] < 0];
+}
+
+static void move_border(net *n, const organ_border *border, bool leaflets, const float *distance)
 {
     net_of(n, border);
     const double present = present_cut(n, border->organ[0]), limit = GAIN * present;
     if (present < LEAST_CUT) return;
+    if (leaflets) {
+        move_leaflets(n, border, distance, present);
+        return;
+    }
     const neck none = {INFINITY, false}, first = find_neck(n, border, 0, distance, limit);
     const neck second = find_neck(n, border, 1, distance, limit);
     const neck *best = is_better(n->sketch, &first, &none) ? &first : &none;
@@ -265,14 +294,15 @@ static void move_border(net *n, const organ_border *border, const float *distanc
         if (n->level[k] < 0) n->owner[n->point[k]] = border->organ[best == &first];
 }
 
-plm_status plm_touch_cut(const plm_sketch *sketch, int32_t *owner, const float *distance, plm_error *error)
+plm_status plm_touch_cut(const plm_sketch *sketch, bool leaflets, const float *distance, int32_t *owner,
+                         plm_error *error)
 {
     plm_scratch scratch = {.error = error};
     net n = {.sketch = sketch, .owner = owner};
     organ_border *list = plm_scratch_take(&scratch, sketch->graph.first[sketch->graph.count] / 2 + 1, sizeof *list);
     const size_t borders = list ? find_borders(&n, distance, list) : 0;
     const plm_status status = borders ? net_start(&n, &scratch) : list ? PLM_OK : PLM_E_MEMORY;
-    for (size_t b = 0; status == PLM_OK && b < borders; b++) move_border(&n, &list[b], distance);
+    for (size_t b = 0; status == PLM_OK && b < borders; b++) move_border(&n, &list[b], leaflets, distance);
     plm_scratch_free(&scratch, NULL);
     return status;
 }

@@ -81,7 +81,7 @@ static void the_border_is_at_the_touch(void **unused)
     link_all(&sketch);
     grow(&sketch);
     const size_t before = count_wrong(&sketch);
-    assert_ok(plm_touch_cut(&sketch, group, distance, &error));
+    assert_ok(plm_touch_cut(&sketch, false, distance, group, &error));
     const size_t after = count_wrong(&sketch);
     print_message("%zu points of the other leaf, %zu after\n", before, after);
     assert_true(before > 100);
@@ -101,8 +101,41 @@ static void a_border_without_a_touch_stays(void **unused)
     link_all(&sketch);
     grow(&sketch);
     for (size_t i = 0; i < sketch.working.count; i++) kept[i] = group[i];
-    assert_ok(plm_touch_cut(&sketch, group, distance, &error));
+    assert_ok(plm_touch_cut(&sketch, false, distance, group, &error));
     assert_memory_equal(kept, group, sketch.working.count * sizeof *kept);
+    plm_graph_free(&sketch.graph);
+}
+
+/* Between compound leaves the narrowest place is a rachis: a leaf with two leaflets, the last on a thin rachis, touches a leaf with
+ * one, whose petiole is shorter. The border in the last leaflet goes to the touch, and not to that rachis, where fewer edges are. */
+static void a_border_of_leaflets_does_not_go_to_a_rachis(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_sketch sketch = empty_sketch();
+    static int32_t before[ROWS];
+    add_leaf(&sketch, 0, 0, 10e-3, 9e-3, 0);
+    for (int k = 0; k < 6; k++) add(&sketch, 19e-3 + k * STEP, 0, 0, false, 0);
+    for (int k = 0; k < 26; k++)
+        for (int j = -9; j < 9; j++) add(&sketch, 22e-3 + k * STEP, j * STEP, 0, false, 0);
+    add_leaf(&sketch, 8e-3, 0, 22e-3, 6e-3, 1);
+    for (int k = 0; k < 6; k++) /* the touch */
+        for (int j = 0; j < 2; j++) add(&sketch, 24e-3 + k * STEP, 4.7e-3 + j * 4e-4, 0, false, 1);
+    link_all(&sketch);
+    grow(&sketch);
+    for (size_t i = 0; i < sketch.working.count; i++) { /* as if the other leaf's way to a third of it were shorter */
+        if (truth[i] == 0 && xyz[i][0] >= 22e-3F && xyz[i][1] > 1.5e-3F) group[i] = 1;
+        before[i] = group[i];
+    }
+    const size_t wrong = count_wrong(&sketch);
+    for (int leaflets = 0; leaflets <= 1; leaflets++) {
+        for (size_t i = 0; i < sketch.working.count; i++) group[i] = before[i];
+        assert_ok(plm_touch_cut(&sketch, leaflets, distance, group, &error));
+        print_message("leaflets %d: %zu wrong, %zu before\n", leaflets, count_wrong(&sketch), wrong);
+        if (leaflets) assert_true(count_wrong(&sketch) <= 12);
+        if (!leaflets) assert_true(count_wrong(&sketch) > wrong);
+    }
+    assert_true(wrong > 80);
     plm_graph_free(&sketch.graph);
 }
 
@@ -125,7 +158,7 @@ static void petioles_of_one_foot_are_told_apart(void **unused)
     size_t feet = 1;
     assert_ok(plm_forked_feet(&sketch, distance, component, &feet, &error));
     assert_int_equal(feet, 2);
-    assert_ok(plm_touch_cut(&sketch, group, distance, &error));
+    assert_ok(plm_touch_cut(&sketch, false, distance, group, &error));
     print_message("%zu of %zu points are of the other leaf\n", count_wrong(&sketch), sketch.working.count);
     assert_true(count_wrong(&sketch) <= sketch.working.count / 20);
     for (size_t i = 0; i < sketch.working.count; i++)
@@ -217,6 +250,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_border_is_at_the_touch),
         cmocka_unit_test(a_border_without_a_touch_stays),
+        cmocka_unit_test(a_border_of_leaflets_does_not_go_to_a_rachis),
         cmocka_unit_test(petioles_of_one_foot_are_told_apart),
         cmocka_unit_test(a_torn_petiole_is_one),
         cmocka_unit_test(a_leaflet_belongs_to_the_rachis_that_leads_to_it),
