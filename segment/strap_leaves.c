@@ -9,6 +9,7 @@
 #include "segment/strap_feet.h"
 #include "segment/strap_stem.h"
 #include "segment/strap_trunk.h"
+#include "segment/tassel.h"
 
 #include <math.h>
 
@@ -147,6 +148,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     if (status == PLM_OK && apart)
         status = mark_stem(sketch, distance, outwards, source, allowed, nearest, origin, error);
     if (status == PLM_OK) status = plm_strap_border(sketch, shape, error);
+    if (status == PLM_OK) status = plm_strap_tassel(sketch, distance, foot, leaves, error);
     if (status == PLM_OK)
         *along = foot;
     else

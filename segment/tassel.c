@@ -1,0 +1,159 @@
+/* segment/tassel.c: what stands at the top of the stem and parts into several strands, far thinner than the plant's leaves are
+ * wide, is a tassel. A leaf has one tip, or some where the scan tore it, and fringes at its rim. (Virtual tassels: 7 to 10 strands, with
+ * what they stand on 0.2 to 0.4 of the leaves' width; a real one that was joined with a leaf: 0.4; torn leaves at the top of 137 plants: 0.7 and
+ * more.) */
+#include "segment/tassel.h"
+
+#include "segment/merge_tree.h"
+#include "segment/scratch.h"
+
+#include <math.h>
+
+enum { STRANDS = 4, STRAND_LEAST = 5 /* points */ };
+static const double STANDS_OUT = 0.1; /* of the leaf's length, beyond the fork: less is no strand */
+static const double THIN = 0.4;       /* width of a strand, of the leaves' median width */
+static const double MEAN = 0.5; /* the same over all strands and what they stand on: a torn rim has thin ends too */
+static const double TOP = 0.9;  /* of the highest foot: leaves from there on may be a tassel */
+
+/* A leaf, or what was taken for one. */
+typedef struct blade {
+    size_t points, thin, wide; /* thin, wide: strands */
+    double length, strands;    /* strands: length of all of them together */
+    float fork, first;         /* the nearest fork of its thin strands, and of all */
+    bool is_tassel;
+} blade;
+
+typedef struct strand {
+    size_t points;
+    float tip, fork;
+    int32_t leaf;
+    bool is_thin;
+} strand;
+
+typedef struct work {
+    plm_sketch *sketch;
+    const float *from_base;
+    const double *foot;
+    plm_scratch scratch;
+    blade *blade;
+    strand *strand;
+    float *distance, *reach, *width;
+    int32_t *branch;
+    size_t blades, strands;
+} work;
+
+static void measure_blades(work *w)
+{
+    const plm_sketch *s = w->sketch;
+    for (size_t i = 0; i < s->working.count; i++) {
+        w->distance[i] = w->reach[i] = INFINITY;
+        if (s->leaf[i] < 0) continue;
+        blade *b = &w->blade[s->leaf[i]];
+        w->distance[i] = w->from_base[i];
+        b->points++;
+        if (isfinite(w->from_base[i])) b->length = fmax(b->length, w->from_base[i] - w->foot[s->leaf[i]]);
+    }
+    for (size_t i = 0; i < s->working.count; i++)
+        if (s->leaf[i] >= 0) w->reach[i] = (float)(STANDS_OUT * w->blade[s->leaf[i]].length);
+}
+
+/* The median over the leaves; w->width: room for one a leaf. */
+static double median_width(work *w)
+{
+    const double cell = w->sketch->working.cell;
+    size_t count = 0;
+    for (size_t k = 0; k < w->blades; k++)
+        if (w->blade[k].length > 0)
+            w->width[count++] = (float)((double)w->blade[k].points * cell * cell / w->blade[k].length);
+    return plm_quantile(w->width, count, 0.5);
+}
+
+static plm_status find_strands(work *w, plm_error *error)
+{
+    const plm_sketch *s = w->sketch;
+    const plm_merge_rule rule = {.distance = w->distance, .reach = w->reach, .apart = s->leaf, .least = STRAND_LEAST};
+    const plm_status status = plm_merge_tree_by(&s->graph, &rule, w->branch, &w->strands, error);
+    if (status != PLM_OK) return status;
+    w->strand = plm_scratch_take(&w->scratch, w->strands + 1, sizeof *w->strand);
+    if (!w->strand) return PLM_E_MEMORY;
+    for (size_t i = 0; i < s->working.count; i++) {
+        if (w->branch[i] < 0) continue;
+        strand *t = &w->strand[w->branch[i]];
+        const float d = w->distance[i];
+        if (!t->points || d > t->tip) t->tip = d;
+        if (!t->points || d < t->fork) t->fork = d;
+        t->leaf = s->leaf[i];
+        t->points++;
+    }
+    return PLM_OK;
+}
+
+/* Gives whether there is any tassel. */
+static bool judge_blades(work *w)
+{
+    const double cell = w->sketch->working.cell, width = median_width(w);
+    double top = 0;
+    bool any = false;
+    for (size_t k = 0; k < w->strands; k++) {
+        strand *t = &w->strand[k];
+        if (!t->points) continue;
+        blade *b = &w->blade[t->leaf];
+        t->is_thin = (double)t->points * cell * cell < THIN * width * (t->tip - t->fork);
+        b->strands += t->tip - t->fork;
+        if (!(b->thin + b->wide) || t->fork < b->first) b->first = t->fork;
+        if (t->is_thin && (!b->thin || t->fork < b->fork)) b->fork = t->fork;
+        if (t->is_thin)
+            b->thin++;
+        else
+            b->wide++;
+    }
+    for (size_t k = 0; k < w->blades; k++)
+        if (isfinite(w->foot[k])) top = fmax(top, w->foot[k]);
+    for (size_t k = 0; k < w->blades; k++) {
+        blade *b = &w->blade[k];
+        const double length = b->strands + fmax(0, b->first - w->foot[k]);
+        b->is_tassel =
+            b->thin >= STRANDS && !(w->foot[k] < TOP * top) && (double)b->points * cell * cell < MEAN * width * length;
+        any = any || b->is_tassel;
+    }
+    return any;
+}
+
+/* Of a leaf that the tassel was joined with, the wide strand stays, and what lies below the thin ones. */
+static void take_off(work *w, double *foot, size_t *leaves, int32_t *number)
+{
+    plm_sketch *s = w->sketch;
+    size_t kept = 0;
+    for (size_t k = 0; k < w->blades; k++) {
+        number[k] = w->blade[k].is_tassel && !w->blade[k].wide ? -1 : (int32_t)kept;
+        if (number[k] >= 0) foot[kept++] = foot[k];
+    }
+    *leaves = kept;
+    for (size_t i = 0; i < s->working.count; i++) {
+        if (s->leaf[i] < 0) continue;
+        const blade *b = &w->blade[s->leaf[i]];
+        const bool is_wide = w->branch[i] >= 0 && !w->strand[w->branch[i]].is_thin;
+        const bool is_tassel = b->is_tassel && (!b->wide || (!is_wide && !(w->distance[i] < b->fork)));
+        s->leaf[i] = is_tassel ? -1 : number[s->leaf[i]];
+    }
+}
+
+plm_status plm_strap_tassel(plm_sketch *sketch, const float *from_base, double *foot, size_t *leaves, plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    work w = {.sketch = sketch, .from_base = from_base, .foot = foot, .scratch = {.error = error}, .blades = *leaves};
+    w.blade = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *w.blade);
+    w.width = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *w.width);
+    w.distance = plm_scratch_take(&w.scratch, count, sizeof *w.distance);
+    w.reach = plm_scratch_take(&w.scratch, count, sizeof *w.reach);
+    w.branch = plm_scratch_take(&w.scratch, count, sizeof *w.branch);
+    int32_t *number = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *number);
+    plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
+        measure_blades(&w);
+        status = find_strands(&w, error);
+    }
+    if (status == PLM_OK && judge_blades(&w)) take_off(&w, foot, leaves, number);
+    plm_scratch_free(&w.scratch, NULL);
+    return status;
+}

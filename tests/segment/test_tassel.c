@@ -1,0 +1,139 @@
+/* A tassel is no leaf: neither that of virtual maize, nor one that a scan joined with the uppermost leaf. */
+#include "support/test.h"
+
+#include "segment/tassel.h"
+#include "support/label_score.h"
+#include "support/virtual_plant.h"
+
+enum { ROWS = 6000 };
+static const double STEP = 2e-3;
+
+static void a_virtual_maize_has_its_leaves_and_no_more(void **unused)
+{
+    (void)unused;
+    static const struct {
+        plm_scanner scanner;
+        size_t points;
+        double noise;
+    } scan[] = {{PLM_SCANNER_UNIFORM, 25000, 0}, {PLM_SCANNER_SPLAT, 40000, 5e-4}};
+    for (size_t k = 0; k < sizeof scan / sizeof *scan; k++) {
+        plm_error error = {0};
+        label_score score;
+        const plm_scan_options options = {
+            .scanner = scan[k].scanner, .seed = 7101, .points = scan[k].points, .noise = scan[k].noise};
+        virtual_plant made = virtual_plant_make("maize_large", 0.3, &options);
+        const plm_cloud *cloud = &made.scan.cloud;
+        assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ,
+                                      &score, &error));
+        size_t tassel = 0, leaf = 0;
+        for (size_t i = 0; i < cloud->count; i++) {
+            const bool is_tassel = cloud->label[i] == PLM_LABEL_OTHER && made.found.label[i] != PLM_LABEL_GROUND;
+            tassel += is_tassel;
+            leaf += is_tassel && made.found.label[i] == PLM_LABEL_LEAF;
+        }
+        print_message("scanner %d: %zu of %zu leaves, F1 %.3f, %zu of the tassel's %zu points in leaves\n",
+                      (int)scan[k].scanner, score.leaves_found, score.leaves, score.f1, leaf, tassel);
+        assert_int_equal(score.leaves, 14);
+        assert_int_equal(score.leaves_found, 14);
+        assert_true(score.f1 >= 0.99);
+        assert_true(leaf < tassel / 10);
+        virtual_plant_free(&made);
+    }
+}
+
+typedef struct drawing {
+    plm_sketch sketch;
+    float xyz[ROWS][3], distance[ROWS];
+    int32_t leaf[ROWS];
+    bool is_strand[ROWS];
+} drawing;
+
+/* A strip from (x, 0, z), so many steps long and points wide, that leans by slope; its foot is at z of the stem. */
+static void add_strip(drawing *d, double x, double z, int length, int width, double slope, int32_t leaf, bool is_strand)
+{
+    for (int k = 0; k < length; k++)
+        for (int j = 0; j < width; j++) {
+            const size_t i = d->sketch.working.count++;
+            assert_true(i < ROWS);
+            d->xyz[i][0] = (float)(x + slope * k * STEP);
+            d->xyz[i][1] = (float)((j - width / 2) * STEP);
+            d->xyz[i][2] = (float)(z + k * STEP);
+            d->distance[i] = (float)(z + k * STEP * sqrt(1 + slope * slope));
+            d->leaf[i] = leaf;
+            d->is_strand[i] = is_strand;
+        }
+}
+
+/* Three leaves at the stem's side, and strands at its top, joined by a stalk; with_leaf: and with what is seen of the uppermost leaf. */
+static void draw(drawing *d, int strands, bool with_leaf)
+{
+    plm_error error = {0};
+    memset(d, 0, sizeof *d);
+    d->sketch.leaf = d->leaf;
+    for (int k = 0; k < 3; k++) add_strip(d, 0.1 + 0.05 * k, 0.1 + 0.1 * k, 60, 12, 1, k, false);
+    add_strip(d, -1e-3, 0.5, 10, 2, 0, 3, !with_leaf);
+    if (with_leaf) add_strip(d, -1e-3 + STEP, 0.5, 25, 8, 2, 3, false);
+    for (int k = 0; k < strands; k++) add_strip(d, 0.002 * k - 0.004, 0.52 + 1e-4 * k, 30, 2, 0.5 * k - 1, 3, true);
+    d->sketch.working.xyz = d->xyz;
+    d->sketch.working.cell = STEP;
+    assert_ok(
+        plm_graph_build((const float(*)[3])d->xyz, d->sketch.working.count, 10, 1.8 * STEP, &d->sketch.graph, &error));
+}
+
+/* How many leaves are left, and how many points have not what they should. */
+static size_t take_off(drawing *d, size_t *wrong)
+{
+    plm_error error = {0};
+    double foot[4] = {0.1, 0.2, 0.3, 0.5};
+    size_t leaves = 4;
+    assert_ok(plm_strap_tassel(&d->sketch, d->distance, foot, &leaves, &error));
+    *wrong = 0;
+    for (size_t i = 0; i < d->sketch.working.count; i++) *wrong += (d->leaf[i] < 0) != d->is_strand[i];
+    for (size_t k = 0; k + 1 < leaves; k++) assert_true(foot[k] < foot[k + 1]);
+    plm_graph_free(&d->sketch.graph);
+    return leaves;
+}
+
+static void strands_at_the_top_are_a_tassel(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    size_t wrong;
+    draw(&d, 5, false);
+    assert_int_equal(take_off(&d, &wrong), 3);
+    assert_int_equal(wrong, 0);
+    draw(&d, 5, true);
+    assert_int_equal(take_off(&d, &wrong), 4);
+    print_message("with a leaf: %zu of %zu points are on the wrong side\n", wrong, d.sketch.working.count);
+    assert_true(wrong <= 20); /* the stalk */
+}
+
+/* In three, or with fringes at its rim. */
+static void a_torn_leaf_is_a_leaf(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    for (int fringes = 0; fringes <= 1; fringes++) {
+        plm_error error = {0};
+        size_t wrong;
+        draw(&d, fringes ? 5 : 3, false);
+        if (fringes) {
+            add_strip(&d, -0.011, 0.45, 40, 30, 0, 3, false);
+            plm_graph_free(&d.sketch.graph);
+            assert_ok(plm_graph_build((const float(*)[3])d.xyz, d.sketch.working.count, 10, 1.8 * STEP, &d.sketch.graph,
+                                      &error));
+        }
+        assert_int_equal(take_off(&d, &wrong), 4);
+        for (size_t i = 0; i < d.sketch.working.count; i++) assert_true(d.leaf[i] >= 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_virtual_maize_has_its_leaves_and_no_more),
+        cmocka_unit_test(strands_at_the_top_are_a_tassel),
+        cmocka_unit_test(a_torn_leaf_is_a_leaf),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
