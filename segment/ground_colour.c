@@ -7,6 +7,7 @@
 #include "segment/ground_mark.h"
 
 static const double most_mixed = 0.1; /* share of points that would be taken for the other kind */
+static const double CLEAR = 2;        /* of a surface's slack: so far off it no noise of the surface reaches */
 
 /* Makes counts by colour, each smoothed over the neighbouring colours, shares of all. */
 static void spread(double count[PLM_COLOURS])
@@ -25,11 +26,24 @@ static void spread(double count[PLM_COLOURS])
     for (int c = 0; c < PLM_COLOURS; c++) count[c] = sum > 0 ? smooth[c] / sum : 0;
 }
 
+/* Does a point that is no ground teach the plant's colours? The tail of a dense ground's noise may be more than all of the plant. */
+static bool is_clear(const plm_marker *m, size_t i)
+{
+    if (m->over[i] < CLEAR * m->soil_slack) return false;
+    if (!m->has_table) return true;
+    const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
+    return !plm_within_level(&m->scene->level[m->scene->table], 3 * m->cell, p) ||
+           !(fabs(plm_relief_over(&m->table, p)) < CLEAR * m->table_slack);
+}
+
 bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
 {
     double plant[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0;
     for (size_t i = 0; i < m->cloud->count; i++)
-        (m->zone[i] == PLM_ZONE_FREE ? plant : ground)[plm_shade(m->cloud->rgb[i])]++;
+        if (m->zone[i] != PLM_ZONE_FREE)
+            ground[plm_shade(m->cloud->rgb[i])]++;
+        else if (is_clear(m, i))
+            plant[plm_shade(m->cloud->rgb[i])]++;
     spread(plant);
     spread(ground);
     for (int c = 0; c < PLM_COLOURS; c++) {

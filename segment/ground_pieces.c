@@ -153,7 +153,12 @@ static uint8_t *find_layers(const plm_marker *m, plm_error *error)
     return layers;
 }
 
-/* Gives the foot its points back, where all layers are filled. */
+static bool has_soils_colour(const plm_marker *m, size_t i, const float *plant_share)
+{
+    return plant_share && plant_share[plm_shade(m->cloud->rgb[i])] < SOIL_SHARE;
+}
+
+/* Gives the foot its points back, where all layers are filled: all, or those that have not the soil's colour. */
 static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double foot[2])
 {
     double sum[2] = {0}, n = 0, soil = 0, other = 0;
@@ -166,8 +171,9 @@ static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *la
             if (turn == 0) {
                 sum[0] += m->place[i][0], sum[1] += m->place[i][1], n++;
                 if (over > m->soil_slack || !plant_share) continue;
-                plant_share[plm_shade(m->cloud->rgb[i])] < SOIL_SHARE ? soil++ : other++;
-            } else if (m->zone[i] == PLM_ZONE_NEAR && !(other < ROOTED * soil)) {
+                has_soils_colour(m, i, plant_share) ? soil++ : other++;
+            } else if (m->zone[i] == PLM_ZONE_NEAR && !(other < ROOTED * soil) &&
+                       !has_soils_colour(m, i, plant_share)) {
                 m->zone[i] = PLM_ZONE_FREE;
             }
         }

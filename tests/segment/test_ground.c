@@ -192,6 +192,26 @@ static void bumps_of_soil_are_soil(void **unused)
         }
 }
 
+/* Where little of a low plant stands in a dense ground, the ground's noise reaches higher than the plant's foot, and its tail holds more
+ * points than the plant: as splats a disc of soil stayed at this rosette's foot, with more points than its petioles. */
+static void the_foot_of_a_rosette_holds_no_soil(void **unused)
+{
+    (void)unused;
+    for (int table = 0; table < 2; table++) {
+        const plm_scan_options scan = {.scanner = PLM_SCANNER_SPLAT,
+                                       .seed = 27002,
+                                       .points = 15000,
+                                       .noise = 5e-4,
+                                       .outliers = 0.01,
+                                       .has_pot = !table,
+                                       .has_table = table};
+        const outcome o = find_in_plant("arabidopsis", &scan, true);
+        print_message("%s: %.4f of the ground left, %.4f of the plant kept\n", table ? "table" : "pot", o.left, o.kept);
+        assert_true(o.ground.found && o.kept > 0.98);
+        assert_true(o.left < (table ? 0.006 : 0.004));
+    }
+}
+
 static void colour_is_not_needed_and_not_trusted(void **unused)
 {
     (void)unused;
@@ -351,6 +371,7 @@ int main(void)
         cmocka_unit_test(a_flat_rosette_is_no_ground),
         cmocka_unit_test(leaves_are_no_ground_and_a_stem_no_pot),
         cmocka_unit_test(bumps_of_soil_are_soil),
+        cmocka_unit_test(the_foot_of_a_rosette_holds_no_soil),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),
