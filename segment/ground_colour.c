@@ -7,7 +7,9 @@
 #include "segment/ground_mark.h"
 
 static const double most_mixed = 0.1; /* share of points that would be taken for the other kind */
-static const double CLEAR = 2;        /* of a surface's slack: so far off it no noise of the surface reaches */
+static const double CLEAR = 2;        /* of a surface's slack: so far off it few points of the surface are */
+static const double ENOUGH =
+    0.1; /* share of what is no ground that is clear of it: less teaches nothing about a low plant */
 
 /* Makes counts by colour, each smoothed over the neighbouring colours, shares of all. */
 static void spread(double count[PLM_COLOURS])
@@ -38,12 +40,19 @@ static bool is_clear(const plm_marker *m, size_t i)
 
 bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
 {
-    double plant[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0;
-    for (size_t i = 0; i < m->cloud->count; i++)
+    double plant[PLM_COLOURS] = {0}, low[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0, clear = 0, rest = 0;
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        const int shade = plm_shade(m->cloud->rgb[i]);
         if (m->zone[i] != PLM_ZONE_FREE)
-            ground[plm_shade(m->cloud->rgb[i])]++;
+            ground[shade]++;
         else if (is_clear(m, i))
-            plant[plm_shade(m->cloud->rgb[i])]++;
+            plant[shade]++, clear++;
+        else
+            low[shade]++, rest++;
+    }
+    if (clear < ENOUGH * (clear + rest))
+        for (int c = 0; c < PLM_COLOURS; c++) plant[c] += low[c];
+    if (!(clear + rest > 0)) return false;
     spread(plant);
     spread(ground);
     for (int c = 0; c < PLM_COLOURS; c++) {

@@ -1,6 +1,6 @@
 /* segment/ground_pieces.c: what shape and colour leave open is settled by what hangs together. Pieces along the ground
  * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground; soil points at the foot of
- * something that stands are its foot; what is left of bumps where nothing stands is soil. */
+ * something that stands are its foot, if colours do not say otherwise; what is left of bumps where nothing stands is soil. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -158,7 +158,8 @@ static bool has_soils_colour(const plm_marker *m, size_t i, const float *plant_s
     return plant_share && plant_share[plm_shade(m->cloud->rgb[i])] < SOIL_SHARE;
 }
 
-/* Gives the foot its points back, where all layers are filled: all, or those that have not the soil's colour. */
+/* Gives the foot its points back, where all layers are filled: without colours all, else those that have not the soil's, as a disc of
+ * soil would stay at a rosette's foot. */
 static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double foot[2])
 {
     double sum[2] = {0}, n = 0, soil = 0, other = 0;

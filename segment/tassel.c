@@ -9,17 +9,17 @@
 
 #include <math.h>
 
-enum { STRANDS = 4, STRAND_LEAST = 5 /* points */ };
+enum { STRANDS = 4, STRAND_LEAST = 5 /* points */, OTHERS = 3 /* leaves whose widths tell */ };
 static const double STANDS_OUT = 0.1; /* of the leaf's length, beyond the fork: less is no strand */
-static const double THIN = 0.4;       /* width of a strand, of the leaves' median width */
+static const double THIN = 0.4;       /* width of a strand, of the other leaves' median width */
 static const double MEAN = 0.5; /* the same over all strands and what they stand on: a torn rim has thin ends too */
 static const double TOP = 0.9;  /* of the highest foot: leaves from there on may be a tassel */
 
 /* A leaf, or what was taken for one. */
 typedef struct blade {
-    size_t points, thin, wide; /* thin, wide: strands */
-    double length, strands;    /* strands: length of all of them together */
-    float fork, first;         /* the nearest fork of its thin strands, and of all */
+    size_t points, thin, wide;    /* thin, wide: strands */
+    double length, strands;       /* strands: length of all of them together */
+    float fork, wide_fork, first; /* the nearest fork of its thin strands, of its wide ones, and of all */
     bool is_tassel;
 } blade;
 
@@ -57,15 +57,15 @@ static void measure_blades(work *w)
         if (s->leaf[i] >= 0) w->reach[i] = (float)(STANDS_OUT * w->blade[s->leaf[i]].length);
 }
 
-/* The median over the leaves; w->width: room for one a leaf. */
-static double median_width(work *w)
+/* The median width of the other leaves, 0 if they are too few; w->width: room for one a leaf. */
+static double width_of_others(work *w, size_t leaf)
 {
     const double cell = w->sketch->working.cell;
     size_t count = 0;
     for (size_t k = 0; k < w->blades; k++)
-        if (w->blade[k].length > 0)
+        if (k != leaf && w->blade[k].length > 0)
             w->width[count++] = (float)((double)w->blade[k].points * cell * cell / w->blade[k].length);
-    return plm_quantile(w->width, count, 0.5);
+    return count < OTHERS ? 0 : plm_quantile(w->width, count, 0.5);
 }
 
 static plm_status find_strands(work *w, plm_error *error)
@@ -88,38 +88,49 @@ static plm_status find_strands(work *w, plm_error *error)
     return PLM_OK;
 }
 
-/* Gives whether there is any tassel. */
-static bool judge_blades(work *w)
+/* Scraps that nothing joins with the rest of the leaf are no strands, however thin. */
+static void judge_strands(work *w, size_t leaf, double width)
 {
-    const double cell = w->sketch->working.cell, width = median_width(w);
-    double top = 0;
-    bool any = false;
+    const double cell = w->sketch->working.cell;
+    blade *b = &w->blade[leaf];
+    b->fork = b->wide_fork = b->first = INFINITY;
     for (size_t k = 0; k < w->strands; k++) {
         strand *t = &w->strand[k];
-        if (!t->points) continue;
-        blade *b = &w->blade[t->leaf];
+        if (!t->points || (size_t)t->leaf != leaf || !(t->tip - t->fork > STANDS_OUT * b->length)) continue;
         t->is_thin = (double)t->points * cell * cell < THIN * width * (t->tip - t->fork);
+        float *fork = t->is_thin ? &b->fork : &b->wide_fork;
+        *fork = fminf(*fork, t->fork);
+        b->first = fminf(b->first, t->fork);
         b->strands += t->tip - t->fork;
-        if (!(b->thin + b->wide) || t->fork < b->first) b->first = t->fork;
-        if (t->is_thin && (!b->thin || t->fork < b->fork)) b->fork = t->fork;
         if (t->is_thin)
             b->thin++;
         else
             b->wide++;
     }
+}
+
+/* Gives whether there is any tassel. */
+static bool judge_blades(work *w)
+{
+    const double cell = w->sketch->working.cell;
+    double top = 0;
+    bool any = false;
     for (size_t k = 0; k < w->blades; k++)
         if (isfinite(w->foot[k])) top = fmax(top, w->foot[k]);
     for (size_t k = 0; k < w->blades; k++) {
         blade *b = &w->blade[k];
+        const double width = width_of_others(w, k);
+        if (w->foot[k] < TOP * top || !(width > 0)) continue;
+        judge_strands(w, k, width);
+        if (b->thin < STRANDS) continue;
         const double length = b->strands + fmax(0, b->first - w->foot[k]);
-        b->is_tassel =
-            b->thin >= STRANDS && !(w->foot[k] < TOP * top) && (double)b->points * cell * cell < MEAN * width * length;
+        b->is_tassel = (double)b->points * cell * cell < MEAN * width * length;
         any = any || b->is_tassel;
     }
     return any;
 }
 
-/* Of a leaf that the tassel was joined with, the wide strand stays, and what lies below the thin ones. */
+/* Of a leaf that the tassel was joined with, the wide strands stay, and what lies below them or below the thin ones. */
 static void take_off(work *w, double *foot, size_t *leaves, int32_t *number)
 {
     plm_sketch *s = w->sketch;
@@ -132,8 +143,9 @@ static void take_off(work *w, double *foot, size_t *leaves, int32_t *number)
     for (size_t i = 0; i < s->working.count; i++) {
         if (s->leaf[i] < 0) continue;
         const blade *b = &w->blade[s->leaf[i]];
-        const bool is_wide = w->branch[i] >= 0 && !w->strand[w->branch[i]].is_thin;
-        const bool is_tassel = b->is_tassel && (!b->wide || (!is_wide && !(w->distance[i] < b->fork)));
+        const bool is_thin = w->branch[i] >= 0 && w->strand[w->branch[i]].is_thin;
+        const bool is_stalk = w->branch[i] < 0 && !(w->distance[i] < fmaxf(b->fork, b->wide_fork));
+        const bool is_tassel = b->is_tassel && (!b->wide || is_thin || is_stalk);
         s->leaf[i] = is_tassel ? -1 : number[s->leaf[i]];
     }
 }

@@ -2,7 +2,7 @@
  * with the shorter way takes a part of the other's blade, and the border of the two leads through that blade. A touch holds
  * less than a blade: so if far fewer edges are cut where one of the two gives the other all that lies beyond a neck of it,
  * the border is there. The neck is the minimum cut (Dinic's maximum flow) between the giver's part near the trunk and the
- * other organ. */
+ * other organ. Between compound leaves points have a price instead. */
 #include "segment/touch_cut.h"
 
 #include "segment/scratch.h"
@@ -14,8 +14,8 @@
 static const double ROOT = 0.8;    /* of a border's least distance from the trunk: nearer, the giver keeps its points */
 static const double GAIN = 0.5;    /* of what holds across the present border, at most */
 static const double LEAST_CUT = 5; /* in edges of one cell: a border of less is a touch */
-/* Of a leaflet's point that changes its leaf, in edges, over what holds across the present border: that grows with the leaflets'
- * width, as their area does with its square. */
+/* A leaflet's point that changes its leaf costs PRICE / present edges, present being what holds across the present border: so it means
+ * the same at any spacing, as points grow with the square of the width and edges with the width. */
 static const double PRICE = 6;
 static const double WORTH = 0.75; /* of what holds across the present border, the new one's edges and prices at most */
 static const float SATURATED = 1e-6f;
@@ -257,21 +257,41 @@ static bool is_better(const plm_sketch *sketch, const neck *a, const neck *b)
     return a->holds < b->holds;
 }
 
+/* How many points of blade each of the two organs has: as they are, or as the cut would have it. */
+static void count_blade(const net *n, const organ_border *border, bool cut, size_t blade[2])
+{
+    blade[0] = blade[1] = 0;
+    for (size_t k = 0; k < n->nodes; k++) {
+        const uint32_t i = n->point[k];
+        const bool second = cut ? n->level[k] < 0 : n->owner[i] == border->organ[1];
+        if (!n->sketch->is_tube[i]) blade[second]++;
+    }
+}
+
 /* Between compound leaves the neck may be a rachis, with leaflets on both sides of it. So every point that changes its leaf has a
  * price, and the cheapest border of all is taken (Greig, Porteous and Seheult 1989), if it saves enough of what the present one
- * holds. */
+ * holds, and leaves both a blade. */
 static void move_leaflets(net *n, const organ_border *border, const float *distance, double present)
 {
     const float price = (float)(PRICE / present);
+    const double cell = n->sketch->working.cell, least = plm_blade_least(n->sketch) / (cell * cell);
+    bool rooted[2] = {false, false};
+    size_t before[2], after[2];
     for (size_t k = 0; k < n->nodes; k++) {
         const uint32_t i = n->point[k];
         const int side = n->owner[i] == border->organ[1];
-        const float cost = distance[i] < ROOT * border->nearest[side] ? INFINITY : price;
-        n->from[k] = side ? 0 : cost;
-        n->into[k] = side ? cost : 0;
+        const bool is_root = distance[i] < ROOT * border->nearest[side];
+        rooted[side] = rooted[side] || is_root;
+        n->from[k] = side ? 0 : is_root ? INFINITY : price;
+        n->into[k] = !side ? 0 : is_root ? INFINITY : price;
     }
+    if (!rooted[0] || !rooted[1]) return;
     fill(n);
     if (find_flow(n, WORTH * present) > WORTH * present) return;
+    count_blade(n, border, false, before);
+    count_blade(n, border, true, after);
+    for (int side = 0; side < 2; side++)
+        if (!((double)before[side] < least) && (double)after[side] < least) return;
     for (size_t k = 0; k < n->nodes; k++) n->owner[n->point[k]] = border->organ[n->level[k] < 0];
 }
 
