@@ -8,8 +8,7 @@
 
 static const double most_mixed = 0.1; /* share of points that would be taken for the other kind */
 static const double CLEAR = 2;        /* of a surface's slack: so far off it few points of the surface are */
-static const double ENOUGH =
-    0.1; /* share of what is no ground that is clear of it: less teaches nothing about a low plant */
+static const double ENOUGH = 0.1; /* share of what is no ground that is clear of it: less would leave a low plant out */
 
 /* Makes counts by colour, each smoothed over the neighbouring colours, shares of all. */
 static void spread(double count[PLM_COLOURS])

@@ -17,9 +17,9 @@ static const double TOP = 0.9;  /* of the highest foot: leaves from there on may
 
 /* A leaf, or what was taken for one. */
 typedef struct blade {
-    size_t points, thin, wide;    /* thin, wide: strands */
-    double length, strands;       /* strands: length of all of them together */
-    float fork, wide_fork, first; /* the nearest fork of its thin strands, of its wide ones, and of all */
+    size_t points, thin, wide; /* thin, wide: strands */
+    double length, strands;    /* strands: length of all of them together */
+    float fork, wide_fork;     /* the nearest fork of its thin strands, and of its wide ones */
     bool is_tassel;
 } blade;
 
@@ -93,14 +93,13 @@ static void judge_strands(work *w, size_t leaf, double width)
 {
     const double cell = w->sketch->working.cell;
     blade *b = &w->blade[leaf];
-    b->fork = b->wide_fork = b->first = INFINITY;
+    b->fork = b->wide_fork = INFINITY;
     for (size_t k = 0; k < w->strands; k++) {
         strand *t = &w->strand[k];
         if (!t->points || (size_t)t->leaf != leaf || !(t->tip - t->fork > STANDS_OUT * b->length)) continue;
         t->is_thin = (double)t->points * cell * cell < THIN * width * (t->tip - t->fork);
         float *fork = t->is_thin ? &b->fork : &b->wide_fork;
         *fork = fminf(*fork, t->fork);
-        b->first = fminf(b->first, t->fork);
         b->strands += t->tip - t->fork;
         if (t->is_thin)
             b->thin++;
@@ -123,7 +122,7 @@ static bool judge_blades(work *w)
         if (w->foot[k] < TOP * top || !(width > 0)) continue;
         judge_strands(w, k, width);
         if (b->thin < STRANDS) continue;
-        const double length = b->strands + fmax(0, b->first - w->foot[k]);
+        const double length = b->strands + fmax(0, fminf(b->fork, b->wide_fork) - w->foot[k]);
         b->is_tassel = (double)b->points * cell * cell < MEAN * width * length;
         any = any || b->is_tassel;
     }
