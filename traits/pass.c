@@ -106,6 +106,7 @@ static plm_status gather_plant(plant_job *job, plm_error *error)
     job->scene.cloud = cloud;
     job->scene.options = job->options;
     job->scene.ground = &job->draft->ground;
+    job->scene.ground_label = job->has_labels ? cloud->label : job->label;
     job->scene.labels_given = job->has_labels;
     const plm_status status = plm_scene_gather(&job->scene, is_plant, error);
     plm_free(is_plant);

@@ -7,6 +7,7 @@
 #include "traits/families.h"
 #include "traits/rosette_base.h"
 #include "traits/scene.h"
+#include "traits/soil_base.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,9 +30,12 @@ static double noise_of_rosette(const plm_scene *scene)
     return known ? scene->sampling.noise : 0;
 }
 
+/** What the base of a plant is known by. */
+typedef enum base_by { BY_SURFACE, BY_PETIOLES, BY_SOIL, BASES } base_by;
+
 /* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem, but for depth
  * cameras, which are noisier at a stem's sides than on leaves that many views see. */
-static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, bool *lowered,
+static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, base_by *by,
                                     plm_error *error)
 {
     const double least = noise_of_rosette(scene);
@@ -39,19 +43,27 @@ static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, pl
     if (status != PLM_OK) return status;
     const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise, .least_noise = least};
     status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
-    return status == PLM_OK ? plm_rosette_base(scene, base, lowered, error) : status;
+    bool lowered = false, standing = false;
+    if (status == PLM_OK && plm_may_be_rosette(scene))
+        status = plm_rosette_base(scene, base, &lowered, error);
+    else if (status == PLM_OK)
+        status = plm_soil_base(scene, top->value + base->value, base, &standing, error);
+    *by = lowered ? BY_PETIOLES : standing ? BY_SOIL : BY_SURFACE;
+    return status;
 }
 
 plm_status plm_trait_plant_height(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
     plm_extreme top, base;
-    bool lowered;
-    const plm_status status = find_top_and_base(scene, &top, &base, &lowered, error);
+    base_by by;
+    const plm_status status = find_top_and_base(scene, &top, &base, &by, error);
     if (status != PLM_OK) return status;
     out->value = top.value + base.value;
     out->std_error = hypot(top.std_error, base.std_error);
-    out->method = lowered ? "extremes of the surface, base by petioles" : "extremes of the surface";
+    static const char *const method[BASES] = {"extremes of the surface", "extremes of the surface, base by petioles",
+                                              "top of the surface above the soil at the foot"};
+    out->method = method[by];
     return PLM_OK;
 }
 
@@ -110,8 +122,8 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
     plm_voxels voxels = {0};
     float *height = NULL;
     const float(*xyz)[3] = (const float(*)[3])scene->plant;
-    bool lowered;
-    plm_status status = find_top_and_base(scene, &top, &base, &lowered, error);
+    base_by by;
+    plm_status status = find_top_and_base(scene, &top, &base, &by, error);
     const double extent = status == PLM_OK ? top.value + base.value : 0;
     if (status == PLM_OK && !(extent > 0)) status = plm_fail(error, PLM_E_DEGENERATE, "the plant has no height");
     /* 150 voxels high: fine against the traits' errors, coarse against the spacing of any cloud worth measuring */
@@ -127,7 +139,9 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
         out->value = level(height, count, share) + base.value;
         const double spread = isfinite(half[0]) && isfinite(half[1]) ? 0.5 * (half[0] - half[1]) : extent;
         out->std_error = sqrt(base.std_error * base.std_error + spread * spread + pow(extent / 150, 2) / 12);
-        out->method = lowered ? "heights of equal areas, base by petioles" : "heights of equal areas";
+        static const char *const method[BASES] = {"heights of equal areas", "heights of equal areas, base by petioles",
+                                                  "heights of equal areas above the soil at the foot"};
+        out->method = method[by];
     }
     plm_free(height);
     plm_voxels_free(&voxels);

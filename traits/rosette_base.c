@@ -147,7 +147,7 @@ static bool has_stem(const plm_scene *scene)
 plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, bool *lowered, plm_error *error)
 {
     *lowered = false;
-    if (scene->options->deadline || has_stem(scene) || !plm_may_be_rosette(scene)) return PLM_OK;
+    if (scene->options->deadline || has_stem(scene)) return PLM_OK;
     double foot[2], foot_error;
     bool found;
     const plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);

@@ -34,6 +34,7 @@ struct plm_scene {
                                are known */
     const plm_measure_options *options;
     const plm_ground *ground;
+    const uint8_t *ground_label; /* of cloud's points: PLM_LABEL_GROUND is ground; NULL where none was looked for */
     plm_habit habit;
     bool is_splat, has_colour;
     bool labels_given;  /* with the cloud: organs end where they say. Else they were found, and their ends are unsure */
