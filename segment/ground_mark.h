@@ -1,5 +1,6 @@
 /* segment/ground_mark.h: from a scene with ground to ground points. Internal: ground_mark.c puts the steps of
- * ground_zone.c (by shape), ground_colour.c (by colour) and ground_pieces.c (by what hangs together) in order. */
+ * ground_zone.c (by shape), ground_colour.c (by colour), ground_pieces.c (by what hangs together) and ground_foot.c (where a
+ * plant stands) in order. */
 #ifndef PLANTIMETER_SEGMENT_GROUND_MARK_H
 #define PLANTIMETER_SEGMENT_GROUND_MARK_H
 

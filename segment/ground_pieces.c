@@ -1,31 +1,48 @@
 /* segment/ground_pieces.c: what shape and colour leave open is settled by what hangs together. Pieces along the ground
- * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground; soil points at the foot of
- * something that stands are its foot, if colours do not say otherwise; what is left of bumps where nothing stands is soil. */
+ * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground, and so are single points among the
+ * ground's that nothing of the plant is beside: a dense ground has thousands in the tail of its noise, and with the
+ * plant's colour by chance, which would widen the hull of a low plant. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "segment/ground_mark.h"
 
-enum { FOOT_LAYERS = 4, FILLED = (1 << FOOT_LAYERS) - 1, GROUND = -1, OPEN = -2, JOIN = 2 };
+enum { GROUND = -1, OPEN = -2, THIN = -3, JOIN = 2, MOST_ABOUT = (2 * JOIN + 1) * (2 * JOIN + 1) * (2 * JOIN + 1) };
 
-static const float SOIL_SHARE = 0.2f;  /* of the plant among the points of a colour: less is the soil's */
-static const float PLANT_SHARE = 0.5f; /* more: no bump of the soil */
-static const double FOOT_LAYER = 0.75; /* voxels */
-static const double BUMP = 0.25;       /* voxels beyond the slack that bumps and the tail of the noise reach */
-/* Points of other colours per point of the soil's about a foot: 0.2 and more under stems, 0.03 and less under rosettes. */
-static const double ROOTED = 0.1;
-
-/* ---- Pieces --------------------------------------------------------------------------------------------------- */
+static const float PLANT_SHARE = 0.5f; /* of the plant among the points of a colour: less is not the plant's, ... */
+static const float CLEAR_SHARE = 0.8f; /* ... more is */
+static const double FILLED =
+    0.25; /* points of the plant's colour in and about a piece of the plant's, of all, at least */
+static const double THINNEST =
+    0.1; /* free points in and about a patch, of the ground's there: less are none of the plant */
 
 typedef struct pieces {
+    const plm_surfels *patches;
     double *ground, *plantlike; /* of each patch: how many of its points are ground, how many have the plant's colour */
-    int32_t *piece;             /* of each patch: number of its piece, GROUND, or OPEN */
+    int32_t *piece;             /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
     bool *stays;   /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
     size_t *size;  /* of each piece, patches */
     double *green; /* of each piece: patches of the plant's colour */
+    double *points_about, *green_about; /* of each piece: points in and about its patches, with the plant's colour */
     int32_t count;
 } pieces;
+
+/* Patches at most reach voxels from one along each axis, itself too. */
+static size_t patches_about(const plm_surfels *s, size_t patch, int reach, uint32_t about[MOST_ABOUT])
+{
+    int32_t at[3];
+    size_t count = 0;
+    for (int i = 0; i < 3; i++) at[i] = (int32_t)(s->centre[patch][i] / s->cell);
+    for (int32_t x = at[0] - reach; x <= at[0] + reach; x++)
+        for (int32_t y = at[1] - reach; y <= at[1] + reach; y++)
+            for (int32_t z = at[2] - reach; z <= at[2] + reach; z++) {
+                if (x < 0 || y < 0 || z < 0 || x >= s->size[0] || y >= s->size[1] || z >= s->size[2]) continue;
+                const int32_t other = s->slot[((int64_t)x * s->size[1] + y) * s->size[2] + z];
+                if (other >= 0) about[count++] = (uint32_t)other;
+            }
+    return count;
+}
 
 /* May a patch be a left-over of the ground: close to wall, rim, soil or table? */
 static bool close_to_ground(const plm_marker *m, const double p[3])
@@ -43,28 +60,48 @@ static bool close_to_ground(const plm_marker *m, const double p[3])
     return p[2] < m->rim_height + 1.5 * m->cell && out < fmax(reach, 0.15 * radius) && out > -0.15 * radius - reach;
 }
 
-/* Joins open patches that are at most two voxels apart. */
-static void join_patches(const plm_surfels *s, pieces *q)
+/* Does a patch hold but the tail of the ground's noise, or what has the plant's colour by chance? */
+static bool is_thin(const plm_marker *m, const pieces *q, size_t patch)
 {
+    const float *place = m->scene->stand.place[patch];
+    uint32_t about[MOST_ABOUT];
+    double ground = 0, points = 0;
+    const size_t count = patches_about(q->patches, patch, 1, about);
+    for (size_t k = 0; k < count; k++) ground += q->ground[about[k]], points += q->patches->points[about[k]];
+    return points - ground < THINNEST * ground && close_to_ground(m, (const double[3]){place[0], place[1], place[2]});
+}
+
+static void count_points(const plm_marker *m, const float *plant_share, pieces *q)
+{
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        const int32_t k = m->patch[i];
+        if (k < 0) continue;
+        q->ground[k] += m->zone[i] != PLM_ZONE_FREE;
+        if (plant_share) q->plantlike[k] += plant_share[plm_shade(m->cloud->rgb[i])] > CLEAR_SHARE;
+    }
+    for (size_t k = 0; k < q->patches->count; k++) {
+        const bool ground = q->ground[k] > 0.5 * q->patches->points[k];
+        q->piece[k] = ground ? GROUND : is_thin(m, q, k) ? THIN : OPEN;
+    }
+}
+
+/* Joins open patches that are at most two voxels apart. */
+static void join_patches(pieces *q)
+{
+    uint32_t about[MOST_ABOUT];
     q->count = 0;
-    for (size_t start = 0; start < s->count; start++) {
+    for (size_t start = 0; start < q->patches->count; start++) {
         if (q->piece[start] != OPEN) continue;
         size_t depth = 0;
         q->stack[depth++] = (uint32_t)start;
         q->piece[start] = q->count;
         while (depth) {
-            const uint32_t k = q->stack[--depth];
-            int32_t at[3];
-            for (int i = 0; i < 3; i++) at[i] = (int32_t)(s->centre[k][i] / s->cell);
-            for (int32_t x = at[0] - JOIN; x <= at[0] + JOIN; x++)
-                for (int32_t y = at[1] - JOIN; y <= at[1] + JOIN; y++)
-                    for (int32_t z = at[2] - JOIN; z <= at[2] + JOIN; z++) {
-                        if (x < 0 || y < 0 || z < 0 || x >= s->size[0] || y >= s->size[1] || z >= s->size[2]) continue;
-                        const int32_t other = s->slot[((int64_t)x * s->size[1] + y) * s->size[2] + z];
-                        if (other < 0 || q->piece[other] != OPEN) continue;
-                        q->piece[other] = q->count;
-                        q->stack[depth++] = (uint32_t)other;
-                    }
+            const size_t count = patches_about(q->patches, q->stack[--depth], JOIN, about);
+            for (size_t k = 0; k < count; k++) {
+                if (q->piece[about[k]] != OPEN) continue;
+                q->piece[about[k]] = q->count;
+                q->stack[depth++] = about[k];
+            }
         }
         q->count++;
     }
@@ -72,37 +109,58 @@ static void join_patches(const plm_surfels *s, pieces *q)
 
 static void judge_pieces(const plm_marker *m, pieces *q)
 {
-    const plm_stand *t = &m->scene->stand;
+    const plm_surfels *s = q->patches;
+    uint32_t about[MOST_ABOUT];
     int32_t largest = -1;
-    for (size_t k = 0; k < t->surfels->count; k++) {
+    for (size_t k = 0; k < s->count; k++) {
         const int32_t n = q->piece[k];
         if (n < 0) continue;
         q->size[n]++;
-        q->green[n] += q->plantlike[k] / t->surfels->points[k];
+        q->green[n] += q->plantlike[k] / s->points[k];
+        const size_t count = patches_about(s, k, 1, about);
+        for (size_t j = 0; j < count; j++)
+            q->points_about[n] += s->points[about[j]], q->green_about[n] += q->plantlike[about[j]];
         if (largest < 0 || q->size[n] > q->size[largest]) largest = n;
-        const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
-        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, p);
+        const float *place = m->scene->stand.place[k];
+        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, (const double[3]){place[0], place[1], place[2]});
     }
-    for (int32_t n = 0; n < q->count; n++)
-        if (n == largest || q->green[n] > 0.5 * (double)q->size[n]) q->stays[n] = true;
+    for (int32_t n = 0; n < q->count; n++) {
+        const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
+        if (n == largest || (is_green && q->green_about[n] > FILLED * q->points_about[n])) q->stays[n] = true;
+    }
+}
+
+/* Is a free point among ground the ground's, as it lies at its surface or has not the plant's colour? */
+static bool is_grounds(const plm_marker *m, size_t i, const float *plant_share)
+{
+    if (plant_share[plm_shade(m->cloud->rgb[i])] < PLANT_SHARE || m->over[i] <= m->soil_slack) return true;
+    const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
+    return m->has_table && plm_within_level(&m->scene->level[m->scene->table], 3 * m->cell, p) &&
+           fabs(plm_relief_over(&m->table, p)) <= m->table_slack;
+}
+
+/* Is the patch by one of a piece that stays? */
+static bool is_beside(const pieces *q, int32_t patch)
+{
+    uint32_t about[MOST_ABOUT];
+    const size_t count = patches_about(q->patches, (size_t)patch, JOIN, about);
+    for (size_t k = 0; k < count; k++) {
+        const int32_t n = q->piece[about[k]];
+        if (n >= 0 && q->stays[n]) return true;
+    }
+    return false;
 }
 
 static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
 {
-    const plm_surfels *s = m->scene->stand.surfels;
-    for (size_t i = 0; i < m->cloud->count; i++) {
-        const int32_t k = m->patch[i];
-        if (k < 0) continue;
-        q->ground[k] += m->zone[i] != PLM_ZONE_FREE;
-        if (plant_share) q->plantlike[k] += plant_share[plm_shade(m->cloud->rgb[i])] > 0.8f;
-    }
-    for (size_t k = 0; k < s->count; k++) q->piece[k] = q->ground[k] > 0.5 * s->points[k] ? GROUND : OPEN;
-    join_patches(s, q);
+    count_points(m, plant_share, q);
+    join_patches(q);
     judge_pieces(m, q);
     for (size_t i = 0; i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const int32_t n = q->piece[m->patch[i]];
-        if (n >= 0 && !q->stays[n]) m->zone[i] = PLM_ZONE_NEAR;
+        const bool single = n == THIN || (n == GROUND && plant_share && is_grounds(m, i, plant_share));
+        if (n >= 0 ? !q->stays[n] : single && !is_beside(q, m->patch[i])) m->zone[i] = PLM_ZONE_NEAR;
     }
 }
 
@@ -115,8 +173,12 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
-                .green = plm_alloc_zero(count, sizeof *q.green, error)};
-    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green;
+                .green = plm_alloc_zero(count, sizeof *q.green, error),
+                .points_about = plm_alloc_zero(count, sizeof *q.points_about, error),
+                .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
+                .patches = m->scene->stand.surfels};
+    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green && q.points_about &&
+                      q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
@@ -125,109 +187,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.stays);
     plm_free(q.size);
     plm_free(q.green);
-    return room ? PLM_OK : PLM_E_MEMORY;
-}
-
-/* ---- The foot of the stem ------------------------------------------------------------------------------------- */
-
-static int64_t foot_cell(const plm_stand *t, const float p[3])
-{
-    const double cell = 0.5 * t->cell;
-    const double a = floor((p[0] - t->low[0]) / cell), b = floor((p[1] - t->low[1]) / cell);
-    if (!(a >= 0 && a < 2 * t->size[0] && b >= 0 && b < 2 * t->size[1])) return -1;
-    return (int64_t)a * (2 * t->size[1]) + (int64_t)b;
-}
-
-/* Of each cell of the floor, the layers over the soil that hold free points, as bits; NULL: no room. The caller's. */
-static uint8_t *find_layers(const plm_marker *m, plm_error *error)
-{
-    const plm_stand *t = &m->scene->stand;
-    const double layer = FOOT_LAYER * m->cell;
-    uint8_t *layers = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), 1, error);
-    for (size_t i = 0; layers && i < m->cloud->count; i++) {
-        const double over = m->over[i] - m->soil_slack;
-        if (m->zone[i] != PLM_ZONE_FREE || !(over > 0 && over < FOOT_LAYERS * layer)) continue;
-        const int64_t c = foot_cell(t, m->place[i]);
-        if (c >= 0) layers[c] |= (uint8_t)(1 << (int)(over / layer));
-    }
-    return layers;
-}
-
-static bool has_soils_colour(const plm_marker *m, size_t i, const float *plant_share)
-{
-    return plant_share && plant_share[plm_shade(m->cloud->rgb[i])] < SOIL_SHARE;
-}
-
-/* Gives the foot its points back, where all layers are filled: without colours all, else those that have not the soil's, as a disc of
- * soil would stay at a rosette's foot. */
-static void free_foot(plm_marker *m, const float *plant_share, const uint8_t *layers, double foot[2])
-{
-    double sum[2] = {0}, n = 0, soil = 0, other = 0;
-    for (int turn = 0; turn < 2; turn++)
-        for (size_t i = 0; i < m->cloud->count; i++) {
-            const double over = m->over[i];
-            if (!(over >= -m->soil.sigma && over < m->soil_slack + FOOT_LAYERS * FOOT_LAYER * m->cell)) continue;
-            const int64_t c = foot_cell(&m->scene->stand, m->place[i]);
-            if (c < 0 || layers[c] != FILLED) continue;
-            if (turn == 0) {
-                sum[0] += m->place[i][0], sum[1] += m->place[i][1], n++;
-                if (over > m->soil_slack || !plant_share) continue;
-                has_soils_colour(m, i, plant_share) ? soil++ : other++;
-            } else if (m->zone[i] == PLM_ZONE_NEAR && !(other < ROOTED * soil) &&
-                       !has_soils_colour(m, i, plant_share)) {
-                m->zone[i] = PLM_ZONE_FREE;
-            }
-        }
-    for (int i = 0; i < 2 && n > 0; i++) foot[i] = sum[i] / n;
-}
-
-/* Where free points fill all layers over the soil, something stands. If nearly all below them has the soil's colour, it
- * stands over the soil, not in it: the petioles of a rosette, which need no foot. */
-plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[2], plm_error *error)
-{
-    uint8_t *layers = find_layers(m, error);
-    if (!layers) return PLM_E_MEMORY;
-    free_foot(m, plant_share, layers, foot);
-    plm_free(layers);
-    return PLM_OK;
-}
-
-/* ---- Bumps ---------------------------------------------------------------------------------------------------- */
-
-/* Does anything stand on the cell of the floor or beside it? */
-static bool is_by_foot(const plm_stand *t, const uint8_t *layers, int64_t cell)
-{
-    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
-    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
-        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++)
-            if (layers[a * high + b] == FILLED) return true;
-    return false;
-}
-
-/* May a free point be soil, by its height, its colour (if that tells) and what else its patch holds? */
-static bool is_like_soil(const plm_marker *m, size_t i, const float *plant_share, const size_t *ground)
-{
-    const float share = plant_share ? plant_share[plm_shade(m->cloud->rgb[i])] : SOIL_SHARE;
-    if (!((double)m->over[i] <= m->soil_slack + BUMP * m->cell) || share > PLANT_SHARE) return false;
-    return share < SOIL_SHARE || 2 * ground[m->patch[i]] > m->scene->stand.surfels->points[m->patch[i]];
-}
-
-/* Where there is little noise, bumps of the soil that are smaller than the relief's cells stick out of it, and where there is
- * much, its tail does. Where nothing stands, such points are soil if they have its colour or most of their patch is ground. */
-plm_status plm_ground_bumps(plm_marker *m, const float *plant_share, plm_error *error)
-{
-    const plm_stand *t = &m->scene->stand;
-    uint8_t *layers = find_layers(m, error);
-    size_t *ground = plm_alloc_zero(t->surfels->count + 1, sizeof *ground, error);
-    const bool room = layers && ground;
-    for (size_t i = 0; room && i < m->cloud->count; i++)
-        if (m->patch[i] >= 0) ground[m->patch[i]] += m->zone[i] != PLM_ZONE_FREE;
-    for (size_t i = 0; room && i < m->cloud->count; i++) {
-        if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0 || !is_like_soil(m, i, plant_share, ground)) continue;
-        const int64_t c = foot_cell(t, m->place[i]);
-        if (c >= 0 && !is_by_foot(t, layers, c)) m->zone[i] = PLM_ZONE_NEAR;
-    }
-    plm_free(ground);
-    plm_free(layers);
+    plm_free(q.points_about);
+    plm_free(q.green_about);
     return room ? PLM_OK : PLM_E_MEMORY;
 }

@@ -208,8 +208,19 @@ static void the_foot_of_a_rosette_holds_no_soil(void **unused)
         const outcome o = find_in_plant("arabidopsis", &scan, true);
         print_message("%s: %.4f of the ground left, %.4f of the plant kept\n", table ? "table" : "pot", o.left, o.kept);
         assert_true(o.ground.found && o.kept > 0.98);
-        assert_true(o.left < (table ? 0.006 : 0.004));
+        assert_true(o.left < 0.0015); /* 0.0014 and 0.0044 with the tail of the noise */
     }
+}
+
+/* Single points at the top of the rim, as high over it as the pot's round is off a circle, made this plant's hull twice too large. */
+static void the_rim_of_a_pot_leaves_no_points(void **unused)
+{
+    (void)unused;
+    const plm_scan_options scan = {.scanner = PLM_SCANNER_DOME, .seed = 261061, .points = 8049, .has_pot = true};
+    const outcome o = find_in_plant("pepper", &scan, true);
+    print_message("rim: %.4f of the ground left, %.4f of the plant kept\n", o.left, o.kept);
+    assert_true(o.ground.found && o.kept > 0.995);
+    assert_true(o.left < 0.001);
 }
 
 static void colour_is_not_needed_and_not_trusted(void **unused)
@@ -372,6 +383,7 @@ int main(void)
         cmocka_unit_test(leaves_are_no_ground_and_a_stem_no_pot),
         cmocka_unit_test(bumps_of_soil_are_soil),
         cmocka_unit_test(the_foot_of_a_rosette_holds_no_soil),
+        cmocka_unit_test(the_rim_of_a_pot_leaves_no_points),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),
