@@ -27,7 +27,6 @@ static const double FAINTEST = 0.1;   /* density of the petiole, of the blade's,
 /* Weight of the thickness: midribs are thick for a while, and neighbours' heights are not independent. */
 static const double THICKNESS = 0.3;
 static const double SWOLLEN = 0.5; /* SDs of the noise by which an outline seems to lie outward */
-static const double UNLIKELY = 12; /* logarithm of how much less likely than the best a row is that does not count */
 /* Outlines: half width of the blade over the way ahead; slope of a lobe's edge, and its curvature over R. */
 static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
 static const double ROUND[] = {0.15, 0.3, 0.6, 1.2, 2.4};
@@ -41,16 +40,17 @@ enum {
     ROUNDS = sizeof ROUND / sizeof *ROUND,
     BENDS = sizeof BEND / sizeof *BEND,
     LOBES = WEDGES + ROUNDS, /* the first of them */
-    OUTLINES = LOBES + BENDS * (sizeof SLOPE / sizeof *SLOPE),
+    OUTLINES = PLM_BASE_OUTLINES,
     ROWS = 144,
     COLUMNS = 20,
-    SEARCH_FROM = 46, /* rows: from 1.1 R before the first guess, ... */
-    SEARCH_TO = 120,  /* ... to 2 R beyond, and IMAGE_ROWS hold all shifts */
+    SEARCH_FROM = 46,                            /* rows: from 1.1 R before the first guess, ... */
+    SEARCH_TO = SEARCH_FROM + PLM_BASE_ROWS - 1, /* ... to 2 R beyond, and IMAGE_ROWS hold all shifts */
     IMAGE_ROWS = ROWS + SEARCH_TO,
     COARSE = 2, /* rows between first tries, a divisor of SEARCH_TO - SEARCH_FROM */
     KERNEL = 40,
     FEWEST = 5
 };
+_Static_assert(OUTLINES == LOBES + BENDS * (sizeof SLOPE / sizeof *SLOPE), "a table has room for all outlines");
 
 /* Logarithm of the density of a leaf with one outline (the share that is blade, while it is drawn): row k is (k - SEARCH_TO + 0.5) steps from the junction. */
 typedef struct image {
@@ -72,6 +72,7 @@ typedef struct outline {
     size_t pixels[2];
     double before[IMAGE_ROWS], within[COLUMNS]; /* shares of the petiole that lie at a row, at a column */
     image *image;                               /* of each outline */
+    double level[2];                            /* log likelihoods of either side are over these */
 } outline;
 
 /* By windows along: points of a strip lie half of its half width off the middle, on the mean. */
@@ -269,50 +270,36 @@ typedef struct evidence {
     double expected;
 } evidence;
 
-/* Logarithm of the mean likelihood of one side's points over the outlines, all alike beforehand. */
-static double side_evidence(const outline *o, int s, int junction)
+/* Fills a row of the table: the outlines of either side, thickness, and what was expected. */
+static void judge(const outline *o, const evidence *e, int k, plm_base_table *table)
 {
-    double value[OUTLINES], best = -INFINITY, sum = 0;
-    for (size_t which = 0; which < OUTLINES; which++) {
-        value[which] = compare(o, s, &o->image[which], junction);
-        best = fmax(best, value[which]);
-    }
-    for (size_t which = 0; which < OUTLINES; which++) sum += exp(value[which] - best);
-    return best + log(sum / OUTLINES);
+    const double at = table->first + k * table->step, off = (at - e->expected) / (EXPECTED_OFF * -o->foot);
+    for (int s = 0; s < 2; s++)
+        for (size_t which = 0; which < OUTLINES; which++)
+            table->likelihood[k][s][which] = (float)(compare(o, s, &o->image[which], SEARCH_FROM + k) - o->level[s]);
+    table->rest[k] = THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - log1p(off * off);
 }
 
-/* Log likelihood of a junction at a row: the outlines of either side, thickness, and what was expected. */
-static double judge(const outline *o, const evidence *e, int junction)
+/* Every COARSE-th row, then those between likely ones. */
+static void search(outline *o, const evidence *e, plm_base_table *table)
 {
-    const double at = junction * o->step - BACK * o->view->scale, off = (at - e->expected) / (EXPECTED_OFF * -o->foot);
-    const double sides = side_evidence(o, 0, junction) + side_evidence(o, 1, junction);
-    return sides + THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - log1p(off * off);
+    double any[OUTLINES], total[PLM_BASE_ROWS], best = -INFINITY;
+    plm_base_any(any);
+    table->first = SEARCH_FROM * o->step - BACK * o->view->scale, table->step = o->step;
+    for (int s = 0; s < 2; s++) o->level[s] = compare(o, s, &o->image[0], SEARCH_FROM);
+    for (int k = 0; k < PLM_BASE_ROWS; k++) table->rest[k] = total[k] = -INFINITY;
+    for (int k = 0; k < PLM_BASE_ROWS; k += COARSE) {
+        judge(o, e, k, table);
+        best = fmax(best, total[k] = plm_base_evidence(table, k, any));
+    }
+    for (int k = 0; k + 1 < PLM_BASE_ROWS; k++) {
+        const int before = k / COARSE * COARSE, after = before + COARSE;
+        if (k != before && !(fmax(total[before], total[after]) < best - PLM_BASE_UNLIKELY)) judge(o, e, k, table);
+    }
 }
 
-/* Mean of the junction: every COARSE-th row, then those between likely ones. */
-static double search(const outline *o, const evidence *e)
-{
-    double total[SEARCH_TO + 1], best = -INFINITY, sum = 0, mean = 0;
-    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) total[k] = -INFINITY;
-    for (int k = SEARCH_FROM; k <= SEARCH_TO; k += COARSE) {
-        total[k] = judge(o, e, k);
-        best = fmax(best, total[k]);
-    }
-    for (int k = SEARCH_FROM; k < SEARCH_TO; k++) {
-        const int before = SEARCH_FROM + (k - SEARCH_FROM) / COARSE * COARSE, after = before + COARSE;
-        if (k == before || fmax(total[before], total[after]) < best - UNLIKELY) continue;
-        total[k] = judge(o, e, k);
-    }
-    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) best = fmax(best, total[k]);
-    for (int k = SEARCH_FROM; k <= SEARCH_TO; k++) {
-        const double weight = total[k] < best - UNLIKELY ? 0 : exp(total[k] - best);
-        sum += weight;
-        mean += weight * k;
-    }
-    return mean / sum * o->step - BACK * o->view->scale;
-}
-
-plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error)
+plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_table *table, bool *told,
+                         plm_error *error)
 {
     plm_scratch scratch = {.error = error};
     outline *o = plm_scratch_take(&scratch, 1, sizeof *o);
@@ -323,7 +310,7 @@ plm_status plm_base_find(const plm_base_view *view, double expected, double *jun
     double *cumulated = plm_scratch_take(&scratch, view->count + 1, sizeof *cumulated);
     image *images = plm_scratch_take(&scratch, OUTLINES, sizeof *images);
     float(*sharp)[COLUMNS] = plm_scratch_take(&scratch, IMAGE_ROWS, sizeof *sharp);
-    *junction = NAN;
+    *told = false;
     if (!scratch.failed) {
         *o = (outline){.view = view,
                        .step = STEP * view->scale,
@@ -337,7 +324,8 @@ plm_status plm_base_find(const plm_base_view *view, double expected, double *jun
             fill_strip(o);
             for (size_t which = 0; which < OUTLINES; which++) draw(o, which, sharp);
             const evidence found = {list, cumulated, plm_base_heights(view, list, rest, cumulated), expected};
-            *junction = search(o, &found);
+            search(o, &found, table);
+            *told = true;
         }
     }
     const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;

@@ -206,16 +206,16 @@ static size_t flatten_near(const leaf_points *leaf, const plm_scale *scale, cons
 }
 
 static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, const frame *f, double expected,
-                              double *junction, plm_error *error)
+                              plm_base_table *table, bool *told, plm_error *error)
 {
     plm_base_view view = {
         .scale = scale->radius, .radius = f->radius, .noise = scale->noise, .gathering = scale->gathering};
     view.place = plm_alloc(leaf->count, sizeof *view.place, error);
     if (!view.place) return PLM_E_MEMORY;
     view.count = flatten_near(leaf, scale, f, view.place);
-    *junction = NAN;
+    *told = false;
     const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
-    const plm_status status = any ? plm_base_find(&view, expected, junction, error) : PLM_OK;
+    const plm_status status = any ? plm_base_look(&view, expected, table, told, error) : PLM_OK;
     plm_free(view.place);
     return status;
 }
@@ -237,43 +237,61 @@ static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame
     }
 }
 
-static plm_status set_leaf(const leaf_points *leaf, const plm_scale *scale, const uint32_t *row, uint32_t *chosen,
-                           float *value, plm_segmentation *out, plm_error *error)
+/** A leaf whose base was looked at: its points, the frame that it was flattened in, and what the outlines say there. */
+typedef struct base {
+    leaf_points leaf;
+    frame frame;
+    double moved;          /* the frame's origin, from the petiole's end by its labels */
+    plm_base_table *table; /* NULL: it tells no border */
+} base;
+
+/* Looks at a leaf's base, in a second round with the petiole's line up to where the first one put the junction. */
+static plm_status look(const leaf_points *leaf, const plm_scale *scale, uint32_t *chosen, float *value, base *out,
+                       plm_error *error)
 {
-    frame f;
-    double junction = NAN, moved = 0; /* of the origin, from the petiole's end by its labels */
+    *out = (base){.leaf = *leaf};
     if (leaf->petiole < FEWEST_PETIOLE || leaf->count - leaf->petiole < FEWEST_BLADE) return PLM_OK;
-    if (!first_line(leaf, scale, chosen, value, &f)) return PLM_OK;
+    if (!first_line(leaf, scale, chosen, value, &out->frame)) return PLM_OK;
+    double any[PLM_BASE_OUTLINES];
+    plm_base_any(any);
     for (int round = 0; round < ROUNDS; round++) {
-        frame next = f;
+        frame next = out->frame;
+        const double junction = round ? plm_base_mean(out->table, any) : 0, moved = out->moved + junction;
         if (round && !next_line(leaf, scale, junction, chosen, &next)) break;
         if (!find_plane(leaf, scale, chosen, &next)) break;
         find_middle(leaf, scale, value, &next);
-        double found;
-        const double shift = round ? moved + junction : 0;
-        const plm_status status = ask_outline(leaf, scale, &next, -shift, &found, error);
-        if (status != PLM_OK) return status;
-        if (isnan(found)) break;
-        f = next, junction = found, moved = shift;
+        plm_base_table *table = plm_alloc(1, sizeof *table, error);
+        bool told = false;
+        const plm_status status = table ? ask_outline(leaf, scale, &next, -moved, table, &told, error) : PLM_E_MEMORY;
+        if (status != PLM_OK || !told) {
+            plm_free(table);
+            if (status != PLM_OK) return status;
+            break;
+        }
+        plm_free(out->table);
+        out->frame = next, out->moved = moved, out->table = table;
     }
-    if (leaf->is_rosettes && moved + junction > MOST_MOVE * scale->radius) return PLM_OK;
-    if (!isnan(junction)) relabel(leaf, scale, &f, -moved, junction, row, out);
     return PLM_OK;
 }
 
-plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
-                           plm_segmentation *out, plm_error *error)
+/* Moves the borders of all leaves to where the outlines of all put them. */
+static void set_borders(const base *list, size_t count, const plm_base_table *const *table, const plm_scale *scale,
+                        const uint32_t *row, plm_segmentation *out)
 {
-    const bool is_rosette = out->habit == PLM_HABIT_ROSETTE;
-    if (is_rosette && scale->noise > CLEAR_NOISE * scale->stem_radius) return PLM_OK;
-    plm_scratch scratch = {.error = error};
+    double share[PLM_BASE_OUTLINES];
+    plm_base_shares(table, count, share);
+    for (size_t i = 0; i < count; i++) {
+        const double junction = plm_base_mean(table[i], share), moved = list[i].moved;
+        if (list[i].leaf.is_rosettes && moved + junction > MOST_MOVE * scale->radius) continue;
+        relabel(&list[i].leaf, scale, &list[i].frame, -moved, junction, row, out);
+    }
+}
+
+/* Gathers the points of each leaf: of its petiole, then of its blade. first: where each of them ends. */
+static void gather(const uint32_t *row, size_t count, const plm_segmentation *out, uint32_t *first, uint32_t *point)
+{
     const size_t leaves = out->leaf_count;
-    uint32_t *first = plm_scratch_take(&scratch, 2 * leaves + 2, sizeof *first); /* by leaf: petiole, then blade */
-    uint32_t *point = plm_scratch_take(&scratch, count + 1, sizeof *point);
-    uint32_t *chosen = plm_scratch_take(&scratch, count + 1, sizeof *chosen);
-    float *value = plm_scratch_take(&scratch, count + 1, sizeof *value);
-    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
-    for (int pass = 0; pass < 2 && status == PLM_OK; pass++) {
+    for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < count; i++) {
             const uint8_t label = out->label[row[i]];
             const int32_t leaf = out->organ[row[i]];
@@ -286,11 +304,33 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
         }
         for (size_t slot = 1; !pass && slot <= 2 * leaves; slot++) first[slot] += first[slot - 1];
     }
+}
+
+plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
+                           plm_segmentation *out, plm_error *error)
+{
+    const bool is_rosette = out->habit == PLM_HABIT_ROSETTE;
+    if (is_rosette && scale->noise > CLEAR_NOISE * scale->stem_radius) return PLM_OK;
+    plm_scratch scratch = {.error = error};
+    const size_t leaves = out->leaf_count;
+    uint32_t *first = plm_scratch_take(&scratch, 2 * leaves + 2, sizeof *first);
+    uint32_t *point = plm_scratch_take(&scratch, count + 1, sizeof *point);
+    uint32_t *chosen = plm_scratch_take(&scratch, count + 1, sizeof *chosen);
+    float *value = plm_scratch_take(&scratch, count + 1, sizeof *value);
+    base *list = plm_scratch_take(&scratch, leaves + 1, sizeof *list);
+    const plm_base_table **table = plm_scratch_take(&scratch, leaves + 1, sizeof *table);
+    size_t number = 0;
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) gather(row, count, out, first, point);
     for (size_t leaf = 0; leaf < leaves && status == PLM_OK; leaf++) {
         const uint32_t begin = leaf ? first[2 * leaf - 1] : 0, middle = first[2 * leaf], end = first[2 * leaf + 1];
         const leaf_points points = {xyz, point + begin, end - begin, middle - begin, is_rosette};
-        status = set_leaf(&points, scale, row, chosen, value, out, error);
+        status = look(&points, scale, chosen, value, &list[number], error);
+        table[number] = list[number].table;
+        number += table[number] != NULL;
     }
+    if (status == PLM_OK) set_borders(list, number, table, scale, row, out);
+    for (size_t i = 0; i < number; i++) plm_free(list[i].table);
     plm_scratch_free(&scratch, NULL);
     return status;
 }

@@ -25,9 +25,34 @@ typedef struct plm_base_view {
     double gathering; /**< of voxel means (cloud/sampling.h), else 0 */
 } plm_base_view;
 
-/** Place along the petiole at which the blade begins, the mean over what is likely (see base_outline.c); expected: where it is
- * thought to be beforehand. NAN where petiole or blade have too few points. PLM_E_MEMORY. */
-plm_status plm_base_find(const plm_base_view *view, double expected, double *junction, plm_error *error);
+enum { PLM_BASE_ROWS = 75, PLM_BASE_OUTLINES = 57 };
+
+/** Logarithm of how much less likely than the best a row is that does not count. */
+#define PLM_BASE_UNLIKELY 12.0
+
+/** How likely the points of either side of a leaf are, by outline and by the row at which the blade begins. */
+typedef struct plm_base_table {
+    float likelihood[PLM_BASE_ROWS][2][PLM_BASE_OUTLINES]; /**< logarithms; nothing where rest is -INFINITY */
+    double rest[PLM_BASE_ROWS]; /**< logarithm of what else tells of a row; -INFINITY where it is unlikely */
+    double first, step;         /**< place along the petiole of row 0, and from row to row, metres */
+} plm_base_table;
+
+/** Fills the table of a leaf (see base_outline.c); expected: where its blade is thought to begin beforehand. told: false where
+ * petiole or blade have too few points; the table tells nothing then. PLM_E_MEMORY. */
+plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_table *table, bool *told,
+                         plm_error *error);
+
+/** Shares of the outlines when nothing is known of them. */
+void plm_base_any(double share[PLM_BASE_OUTLINES]);
+
+/** Shares of the outlines among the sides of all leaves of a plant (see base_shares.c). */
+void plm_base_shares(const plm_base_table *const *table, size_t count, double share[PLM_BASE_OUTLINES]);
+
+/** Logarithm of how likely a row is where outlines have such shares. */
+double plm_base_evidence(const plm_base_table *table, int row, const double share[PLM_BASE_OUTLINES]);
+
+/** Place along the petiole at which the blade begins, the mean over what is likely where outlines have such shares. */
+double plm_base_mean(const plm_base_table *table, const double share[PLM_BASE_OUTLINES]);
 
 /** Whether the blade reaches to the sides of all that is compared with outlines. A smaller one ends within it, and an outline,
  * which knows no tip, would put its base where it ends. */
