@@ -1,4 +1,4 @@
-/* segment/base_shares.c: the blades of a plant begin alike. In noise a narrow lobe that begins late is nearly as likely as a wide
+/* segment/base_shares.c: the blades of a plant, but for a rosette's of different ages, begin alike. In noise a narrow lobe that begins late is nearly as likely as a wide
  * one that begins early, and one side of one leaf hardly tells which; the sides of all leaves together tell what outlines the plant
  * has. So the outlines are a mixture with the same shares at all sides, found by expectation and maximisation (A. P. Dempster,
  * N. M. Laird, D. B. Rubin 1977) from what each side says of outline and junction. */

@@ -1,6 +1,7 @@
 /* segment/blade_base.c: the border between a petiole and its blade at all points of the plant. The stages before find it on
  * the sketch, by widths of level sets, to a few steps; here the leaf about that place is flattened, the outline of its base
- * tells the border (base_outline.c), the petiole's line is taken up to there, and the outline is asked once more. */
+ * tells the border (base_outline.c), the petiole's line is taken up to there, and the outline is asked once more, now as the plant's
+ * leaves have it (base_shares.c). */
 #include "segment/blade_base.h"
 
 #include "cloud/linear.h"
@@ -274,12 +275,12 @@ static plm_status look(const leaf_points *leaf, const plm_scale *scale, uint32_t
     return PLM_OK;
 }
 
-/* Moves the borders of all leaves to where the outlines of all put them. */
+/* Moves the borders of all leaves to where the outlines of all put them; a rosette's leaves of different ages begin unlike. */
 static void set_borders(const base *list, size_t count, const plm_base_table *const *table, const plm_scale *scale,
                         const uint32_t *row, plm_segmentation *out)
 {
     double share[PLM_BASE_OUTLINES];
-    plm_base_shares(table, count, share);
+    plm_base_shares(table, list->leaf.is_rosettes ? 0 : count, share);
     for (size_t i = 0; i < count; i++) {
         const double junction = plm_base_mean(table[i], share), moved = list[i].moved;
         if (list[i].leaf.is_rosettes && moved + junction > MOST_MOVE * scale->radius) continue;

@@ -56,7 +56,8 @@ static inline int plm_shade(const uint8_t rgb[3])
     return (rgb[0] / divide * PLM_SHADES + rgb[1] / divide) * PLM_SHADES + rgb[2] / divide;
 }
 
-/** Makes ground of the pieces along soil, wall and table that do not join the plant. plant_share may be NULL. */
+/** Makes ground of the pieces along soil, wall and table that do not join the plant, and of single points among the ground's.
+ * plant_share may be NULL. */
 plm_status plm_ground_leftovers(plm_marker *marker, const float *plant_share, plm_error *error);
 
 /** Gives the plant the foot of its stem back, and says where it stands (u, v; untouched where nothing stands). plant_share

@@ -1,9 +1,9 @@
 /* segment/ground_pieces.c: what shape and colour leave open is settled by what hangs together. Pieces along the ground
  * that do not join the plant (clods, lips, saucers, stray points at the wall) are ground, and so are single points among the
  * ground's that nothing of the plant is beside: a dense ground has thousands in the tail of its noise, and with the
- * plant's colour by chance, which would widen the hull of a low plant. */
+ * plant's colour by chance, which would widen the hull of a low plant. Where colour does not tell, those in patches that are mostly
+ * ground stay. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "segment/ground_mark.h"
 
@@ -11,10 +11,10 @@ enum { GROUND = -1, OPEN = -2, THIN = -3, JOIN = 2, MOST_ABOUT = (2 * JOIN + 1) 
 
 static const float PLANT_SHARE = 0.5f; /* of the plant among the points of a colour: less is not the plant's, ... */
 static const float CLEAR_SHARE = 0.8f; /* ... more is */
-static const double FILLED =
-    0.25; /* points of the plant's colour in and about a piece of the plant's, of all, at least */
-static const double THINNEST =
-    0.1; /* free points in and about a patch, of the ground's there: less are none of the plant */
+/* Patches mostly of the plant's colour in and about a piece of the plant's, of all there, at least. */
+static const double FILLED = 0.25;
+/* Free points in and about a patch, of the ground's there: less are none of the plant. */
+static const double THINNEST = 0.1;
 
 typedef struct pieces {
     const plm_surfels *patches;
@@ -24,7 +24,7 @@ typedef struct pieces {
     bool *stays;   /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
     size_t *size;  /* of each piece, patches */
     double *green; /* of each piece: patches of the plant's colour */
-    double *points_about, *green_about; /* of each piece: points in and about its patches, with the plant's colour */
+    size_t *about, *green_about; /* of each piece: patches in and about its own, those mostly of the plant's colour */
     int32_t count;
 } pieces;
 
@@ -118,15 +118,15 @@ static void judge_pieces(const plm_marker *m, pieces *q)
         q->size[n]++;
         q->green[n] += q->plantlike[k] / s->points[k];
         const size_t count = patches_about(s, k, 1, about);
-        for (size_t j = 0; j < count; j++)
-            q->points_about[n] += s->points[about[j]], q->green_about[n] += q->plantlike[about[j]];
+        q->about[n] += count;
+        for (size_t j = 0; j < count; j++) q->green_about[n] += 2 * q->plantlike[about[j]] > s->points[about[j]];
         if (largest < 0 || q->size[n] > q->size[largest]) largest = n;
         const float *place = m->scene->stand.place[k];
         if (!q->stays[n]) q->stays[n] = !close_to_ground(m, (const double[3]){place[0], place[1], place[2]});
     }
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
-        if (n == largest || (is_green && q->green_about[n] > FILLED * q->points_about[n])) q->stays[n] = true;
+        if (n == largest || (is_green && (double)q->green_about[n] > FILLED * (double)q->about[n])) q->stays[n] = true;
     }
 }
 
@@ -174,11 +174,11 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
-                .points_about = plm_alloc_zero(count, sizeof *q.points_about, error),
+                .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green && q.points_about &&
-                      q.green_about;
+    const bool room =
+        q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green && q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
@@ -187,7 +187,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.stays);
     plm_free(q.size);
     plm_free(q.green);
-    plm_free(q.points_about);
+    plm_free(q.about);
     plm_free(q.green_about);
     return room ? PLM_OK : PLM_E_MEMORY;
 }

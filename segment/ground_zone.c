@@ -34,6 +34,9 @@ static bool on_table_level(const void *context, const double p[3])
 /* A point of the surface lies within 2.2 sigma (97 %) of its relief, or so many voxels: soil has bumps. */
 static const double SOIL_BUMP = 0.3, EVEN_BUMP = 0.1;
 
+/* Share of the most sectors at which a rim ends that has no end at half of all. */
+static const double SHARP = 0.75;
+
 static double slack_of(const plm_relief *relief, double bump)
 {
     return fmax(2.2 * relief->sigma, bump);
@@ -107,6 +110,25 @@ static void view_rim(const plm_marker *m, rim_view *view)
     }
 }
 
+/* Inner radius of the rim over the outer one. Seen from the wall inwards: the rim ends where fewer than half of the sectors are seen,
+ * or less than a share of the most, as the tail of the soil's noise may fill half of them. Where leaves fill all sectors there is no
+ * such edge: NAN, and the rim is taken to be thin. */
+static double find_inner(const rim_view *view, double least_share)
+{
+    const int thickest = (int)(0.82 / 1.2 * PROFILE);
+    int most = 0;
+    double inner = 1;
+    for (int b = PROFILE - 1; b >= thickest; b--) {
+        const int n = count_bits(view->at_radius[b] | view->at_radius[b - 1]);
+        if (n > most) most = n;
+        if (n >= SECTORS / 2 && n >= least_share * most)
+            inner = (b - 1.0) / PROFILE * 1.2;
+        else if (inner < 1)
+            return inner;
+    }
+    return NAN;
+}
+
 /* How high the rim is and how thick. */
 static void measure_rim(plm_marker *m)
 {
@@ -121,18 +143,9 @@ static void measure_rim(plm_marker *m)
         if (best >= SECTORS / 2 && n >= best / 2)
             m->rim_height = view.low + (b + 1.0) / PROFILE * (view.high - view.low);
     }
-    /* Seen from the wall inwards: the rim ends where fewer sectors are seen. Where leaves fill all sectors there is no
-     * such edge, and the rim is taken to be thin. */
-    const int thickest = (int)(0.82 / 1.2 * PROFILE);
-    bool edge = false;
-    m->inner = 1;
-    for (int b = PROFILE - 1; b >= thickest && !edge; b--) {
-        if (count_bits(view.at_radius[b] | view.at_radius[b - 1]) >= SECTORS / 2)
-            m->inner = (b - 1.0) / PROFILE * 1.2;
-        else
-            edge = m->inner < 1;
-    }
-    if (!edge) m->inner = 0.97;
+    m->inner = find_inner(&view, 0);
+    if (isnan(m->inner)) m->inner = find_inner(&view, SHARP);
+    if (isnan(m->inner)) m->inner = 0.97;
     m->inner = fmin(m->inner, 1 - m->wall_slack / pot->radius[pot->rows - 1]);
 }
 

@@ -1,6 +1,7 @@
-/* traits/soil_base.c: where a stem comes out of soil, the plant's lowest surface is the soil's height there. The border between
- * the two is drawn in their noise: it leaves some of the stem to the soil, or some of the soil to the plant, several millimetres
- * of a large plant. The soil about the foot is wide, and its height there is known to a fraction of the noise. */
+/* traits/soil_base.c: where a stem comes out of soil, the plant's lowest surface is the soil's height there, whatever labels, given or
+ * found, call the stem's end. The border between the two is drawn in their noise: it leaves some of the stem to the soil, or some of
+ * the soil to the plant, several millimetres of a large plant. The soil about the foot is wide, and its height there is known to a
+ * fraction of the noise. */
 #include "traits/soil_base.h"
 
 #include "cloud/order.h"
@@ -9,11 +10,13 @@
 #include <stdlib.h>
 
 /* Shares of the plant's height. */
-static const double foot_share = 0.03;  /* of the lowest points: they are the foot, ... */
+static const double foot_share =
+    0.03; /* of the points so little over the soil, and near_ more: they are the foot, ... */
 static const double widest_foot = 0.04; /* ... where half of them lie within so much of its middle */
 static const double near_share = 0.015; /* from the base to the soil, at most, and so many times the noise: */
 static const double near_noise = 4;
-static const double reach_share = 0.1; /* soil that is asked */
+static const double reach_share = 0.1; /* soil that is asked, ... */
+static const double clear_of_foot = 2; /* ... from so many widths of the foot on: nearer ones have the border's bias */
 /* Parts of the soil's own scatter, and of the foot's width, by which the soil is told wrong: it is no plane, and a stem that
  * leans is cut aslant. */
 static const double uneven = 0.25, aslant = 0.1;
@@ -24,7 +27,7 @@ typedef struct foot_print {
     double middle[2], width;
 } foot_print;
 
-/* false: the plant has no point between the heights, or what it has is not narrow. value: room for all of its points. */
+/* false: the plant has hardly a point between the heights, or what it has is not narrow. value: room for all of its points. */
 static bool find_foot(const plm_scene *scene, double low, double high, double widest, double *value, foot_print *foot)
 {
     size_t count = 0;
@@ -57,15 +60,18 @@ static int nearer(const void *a, const void *b)
     return (p->height > q->height) - (p->height < q->height);
 }
 
-/* The soil nearest to the foot, at the front of point (room for all of the cloud's). Gives the number of its points. */
-static size_t soil_about(const plm_scene *scene, const foot_print *foot, double reach, soil_point *point)
+/* The soil nearest to the foot, at the front of point (room for all of the cloud's): ground between two heights, as walls, rims and what
+ * lies below a pot are ground too. Gives the number of its points. */
+static size_t soil_about(const plm_scene *scene, const foot_print *foot, double low, double high, double reach,
+                         soil_point *point)
 {
     const plm_cloud *cloud = scene->cloud;
     size_t count = 0;
     for (size_t i = 0; i < cloud->count; i++) {
-        if (scene->ground_label[i] != PLM_LABEL_GROUND) continue;
+        const double z = cloud->xyz[i][2];
+        if (scene->ground_label[i] != PLM_LABEL_GROUND || !(z > low && z < high)) continue;
         const double off = hypot(cloud->xyz[i][0] - foot->middle[0], cloud->xyz[i][1] - foot->middle[1]);
-        if (off < reach) point[count++] = (soil_point){off, cloud->xyz[i][2]};
+        if (off > clear_of_foot * foot->width && off < reach) point[count++] = (soil_point){off, z};
     }
     qsort(point, count, sizeof *point, nearer);
     return count < MOST_SOIL ? count : MOST_SOIL;
@@ -95,7 +101,7 @@ plm_status plm_soil_base(const plm_scene *scene, double height, plm_extreme *bas
     foot_print foot = {.width = 0};
     if (status == PLM_OK && find_foot(scene, plane - tolerance, plane + tolerance + foot_share * height,
                                       widest_foot * height, value, &foot)) {
-        const size_t count = soil_about(scene, &foot, reach_share * height, soil);
+        const size_t count = soil_about(scene, &foot, plane - tolerance, plane + tolerance, reach_share * height, soil);
         double std_error = NAN;
         const double told = count < FEWEST_SOIL ? NAN : height_of_soil(soil, count, &foot, value, &std_error);
         *changed = fabs(-base->value - told) < tolerance;

@@ -208,7 +208,7 @@ static void the_foot_of_a_rosette_holds_no_soil(void **unused)
         const outcome o = find_in_plant("arabidopsis", &scan, true);
         print_message("%s: %.4f of the ground left, %.4f of the plant kept\n", table ? "table" : "pot", o.left, o.kept);
         assert_true(o.ground.found && o.kept > 0.98);
-        assert_true(o.left < 0.0015); /* 0.0014 and 0.0044 with the tail of the noise */
+        assert_true(o.left < 0.001); /* 0.0014 and 0.0044 with the tail of the noise */
     }
 }
 
@@ -221,6 +221,23 @@ static void the_rim_of_a_pot_leaves_no_points(void **unused)
     print_message("rim: %.4f of the ground left, %.4f of the plant kept\n", o.left, o.kept);
     assert_true(o.ground.found && o.kept > 0.995);
     assert_true(o.left < 0.001);
+}
+
+/* The inside of a thick wall was the plant's where the tail of the soil's noise hid its edge from above: a hull 3.4 times too large. */
+static void the_inside_of_a_pot_is_its_own(void **unused)
+{
+    (void)unused;
+    const plm_scan_options scan = {.scanner = PLM_SCANNER_RGBD,
+                                   .seed = 262005,
+                                   .points = 121535,
+                                   .noise = 4.6e-4,
+                                   .views = 20,
+                                   .outliers = 0.005,
+                                   .has_pot = true};
+    const outcome o = find_in_plant("soybean", &scan, true);
+    print_message("inside: %.4f of the ground left, %.4f of the plant kept\n", o.left, o.kept);
+    assert_true(o.ground.found && o.kept > 0.995);
+    assert_true(o.left < 0.003);
 }
 
 static void colour_is_not_needed_and_not_trusted(void **unused)
@@ -384,6 +401,7 @@ int main(void)
         cmocka_unit_test(bumps_of_soil_are_soil),
         cmocka_unit_test(the_foot_of_a_rosette_holds_no_soil),
         cmocka_unit_test(the_rim_of_a_pot_leaves_no_points),
+        cmocka_unit_test(the_inside_of_a_pot_is_its_own),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),

@@ -9,7 +9,7 @@
 #define NOISE 3e-4
 #define OFF   1.5e-3
 
-enum { STEM = 3000, LEAF = 6000, SOIL = 20000, LOW = 8000 };
+enum { STEM = 3000, LEAF = 6000, SOIL = 50000, LOW = 8000 };
 
 /* What of the plant is near the soil besides its stem. */
 typedef enum low_part { NOTHING, WIDE_LEAF, HANGING_LEAF } low_part;
@@ -44,7 +44,7 @@ static plm_cloud plant_on_soil(double stem_from, low_part low)
     test_tube_points(&tube, STEM, &state, stem);
     for (size_t i = 0; i < STEM; i++) add(&cloud, PLM_LABEL_STEM, 0, stem[i][0], stem[i][1], stem[i][2]);
     add_disc(&cloud, PLM_LABEL_LEAF, 0, LEAF, 0, 0.03, TALL, &state);
-    add_disc(&cloud, PLM_LABEL_GROUND, -1, SOIL, 0, 0.1, 0, &state);
+    add_disc(&cloud, PLM_LABEL_GROUND, -1, SOIL, 0, 0.16, 0, &state);
     if (low == WIDE_LEAF) add_disc(&cloud, PLM_LABEL_LEAF, 1, LOW, 0, 0.04, 2 * OFF, &state);
     for (int i = 0; low == HANGING_LEAF && i < LOW; i++)
         add(&cloud, PLM_LABEL_LEAF, 1, 0.12 + NOISE * test_normal(&state), 0.02 * test_uniform(&state),
