@@ -3,9 +3,9 @@
  * petiole), straight to the side, or with a lobe that reaches back and whose edge leaves the petiole by a slope and bends
  * away. The points are taken for a Poisson process whose density is that of the petiole in the strip, of the blade within
  * the outline, and little elsewhere, all blurred by the noise; the junction is the mean over what is likely, all outlines of
- * either side taken together by their shares among the plant's leaves (base_shares.c): the likeliest alone jumps between them. The first guess is good or, where deep lobes lie beside the petiole, far too
- * early: its errors follow a Cauchy law. Where the noise is small beside the petiole, that a tube is thick and a blade is not
- * counts as well (base_thickness.c). */
+ * either side taken together by their shares among the plant's leaves (base_shares.c): the likeliest alone jumps between
+ * them. The first guess is good or, where deep lobes lie beside the petiole, far too early: its errors follow a Cauchy law.
+ * Where the noise is small beside the petiole, that a tube is thick and a blade is not counts as well (base_thickness.c). */
 #include "segment/blade_base.h"
 
 #include "segment/scratch.h"
