@@ -52,13 +52,14 @@ static plm_cloud plant_on_soil(double stem_from, low_part low)
     return cloud;
 }
 
-static plm_estimate height_of(double stem_from, low_part low, plm_ground_mode ground)
+static plm_estimate height_by(const char *trait, double origin, double stem_from, low_part low, plm_ground_mode ground)
 {
     plm_error error = {0};
     plm_cloud cloud = plant_on_soil(stem_from, low);
+    cloud.origin[2] = origin;
     plm_measure_options options;
     plm_measure_defaults(&options);
-    options.traits = "plant_height";
+    options.traits = trait;
     options.up = PLM_UP_Z;
     options.ground = ground;
     plm_measurement m;
@@ -71,6 +72,11 @@ static plm_estimate height_of(double stem_from, low_part low, plm_ground_mode gr
     return height;
 }
 
+static plm_estimate height_of(double stem_from, low_part low, plm_ground_mode ground)
+{
+    return height_by("plant_height", 0, stem_from, low, ground);
+}
+
 static void a_stem_begins_at_the_soil_wherever_it_was_cut(void **unused)
 {
     (void)unused;
@@ -79,6 +85,20 @@ static void a_stem_begins_at_the_soil_wherever_it_was_cut(void **unused)
         assert_near(height.value, TALL, 0.3e-3); /* the top is known to the noise */
         assert_near(height.value, TALL, 2 * height.std_error);
         assert_true(height.std_error < 2 * NOISE);
+    }
+}
+
+/* The soil's height counts from the origin, and all heights have the same base. */
+static void all_heights_stand_on_the_soil_wherever_the_origin_is(void **unused)
+{
+    (void)unused;
+    static const char *const trait[] = {"plant_height", "plant_height_p98", "plant_height_p99"};
+    for (size_t i = 0; i < COUNT(trait); i++) {
+        const plm_estimate at_zero = height_by(trait[i], 0, OFF, NOTHING, PLM_GROUND_AUTO);
+        const plm_estimate far_off = height_by(trait[i], -37.5, OFF, NOTHING, PLM_GROUND_AUTO);
+        assert_near(at_zero.value, TALL, 1.1e-3); /* a percentile of a level leaf's noise, in voxels of a millimetre */
+        assert_near(far_off.value, at_zero.value, 1e-5);
+        assert_non_null(strstr(far_off.method, "above the soil at the foot"));
     }
 }
 
@@ -107,6 +127,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stem_begins_at_the_soil_wherever_it_was_cut),
+        cmocka_unit_test(all_heights_stand_on_the_soil_wherever_the_origin_is),
         cmocka_unit_test(a_base_without_soil_is_the_lowest_that_was_seen),
         cmocka_unit_test(leaves_that_lie_low_are_no_foot),
         cmocka_unit_test(a_leaf_that_hangs_below_the_soil_is_the_lowest),
