@@ -31,10 +31,8 @@ static void spread(double count[PLM_COLOURS])
 static bool is_clear(const plm_marker *m, size_t i)
 {
     if (m->over[i] < CLEAR * m->soil_slack) return false;
-    if (!m->has_table) return true;
     const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
-    return !plm_within_level(&m->scene->level[m->scene->table], 3 * m->cell, p) ||
-           !(fabs(plm_relief_over(&m->table, p)) < CLEAR * m->table_slack);
+    return !plm_at_table(m, CLEAR * m->table_slack, p);
 }
 
 bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])

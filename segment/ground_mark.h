@@ -7,6 +7,8 @@
 #include "segment/ground_scene.h"
 #include "segment/relief.h"
 
+#include <math.h>
+
 /** Heights and sizes as the marking found them, in the stand's coordinates. */
 typedef struct plm_ground_marks {
     double foot[3];    /**< where the plant leaves the soil: u, v, w */
@@ -73,6 +75,13 @@ static inline bool plm_within_level(const plm_level *level, double margin, const
     const double du = p[0] - level->centre[0], dv = p[1] - level->centre[1];
     const double reach = plm_level_reach(level, du, dv) + margin;
     return du * du + dv * dv <= reach * reach;
+}
+
+/** Is the place on the table or at most slack off it? */
+static inline bool plm_at_table(const plm_marker *m, double slack, const double p[3])
+{
+    return m->has_table && plm_within_level(&m->scene->level[m->scene->table], 3 * m->cell, p) &&
+           fabs(plm_relief_over(&m->table, p)) <= slack;
 }
 
 #endif

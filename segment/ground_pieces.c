@@ -135,8 +135,7 @@ static bool is_grounds(const plm_marker *m, size_t i, const float *plant_share)
 {
     if (plant_share[plm_shade(m->cloud->rgb[i])] < PLANT_SHARE || m->over[i] <= m->soil_slack) return true;
     const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
-    return m->has_table && plm_within_level(&m->scene->level[m->scene->table], 3 * m->cell, p) &&
-           fabs(plm_relief_over(&m->table, p)) <= m->table_slack;
+    return plm_at_table(m, m->table_slack, p);
 }
 
 /* Is the patch by one of a piece that stays? */

@@ -1,8 +1,7 @@
 /* traits/plant_height.c: heights of a plant, by the definitions that are in use side by side. Condition: 1 (a difference of
- * two heights); the standard errors come from gap, noise and spacing at both ends (traits/extreme.c), or at the base from the soil's
- * scatter (traits/soil_base.c). No index over the
- * cloud is built, and labels of organs play no part but where a low plant may hide its base (traits/rosette_base.c); then organs
- * are found for it. So height is the same whatever else is asked for. */
+ * two heights); the standard errors come from gap, noise and spacing at both ends (traits/extreme.c), or at the base from the
+ * soil's scatter (traits/soil_base.c). No index over the cloud is built, and labels of organs play no part but where a low plant
+ * may hide its base (traits/rosette_base.c); then organs are found for it. So height is the same whatever else is asked for. */
 #include "cloud/voxel.h"
 #include "traits/extreme.h"
 #include "traits/families.h"
@@ -22,13 +21,12 @@ static plm_status find_top(const plm_scene *scene, double least_noise, plm_extre
     return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &options, top, error);
 }
 
-/* The noise of the whole of a low plant, or 0: the few small leaves at its top and the petioles at its foot are narrower than what the
+/* The noise of the whole of a plant that may be a rosette, or 0: the few small leaves at its top and the petioles at its foot are narrower than what the
  * noise is measured by, and read a tenth to a third less. Where the plant may be a rosette the index that it is from is built
  * for the heights. In fused scans it differs between places. */
 static double noise_of_rosette(const plm_scene *scene)
 {
-    const bool known = !scene->options->deadline && !scene->sampling.fused && plm_may_be_rosette(scene);
-    return known ? scene->sampling.noise : 0;
+    return !scene->options->deadline && !scene->sampling.fused ? scene->sampling.noise : 0;
 }
 
 /** What the base of a plant is known by. */
@@ -39,13 +37,14 @@ typedef enum base_by { BY_SURFACE, BY_PETIOLES, BY_SOIL, BASES } base_by;
 static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, plm_extreme *base, base_by *by,
                                     plm_error *error)
 {
-    const double least = noise_of_rosette(scene);
+    const bool may_be_rosette = plm_may_be_rosette(scene);
+    const double least = may_be_rosette ? noise_of_rosette(scene) : 0;
     plm_status status = find_top(scene, least, top, error);
     if (status != PLM_OK) return status;
     const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise, .least_noise = least};
     status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
     bool lowered = false, standing = false;
-    if (status == PLM_OK && plm_may_be_rosette(scene))
+    if (status == PLM_OK && may_be_rosette)
         status = plm_rosette_base(scene, base, &lowered, error);
     else if (status == PLM_OK)
         status = plm_soil_base(scene, top->value + base->value, base, &standing, error);

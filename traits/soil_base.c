@@ -10,8 +10,7 @@
 #include <stdlib.h>
 
 /* Shares of the plant's height. */
-static const double foot_share =
-    0.03; /* of the points so little over the soil, and near_ more: they are the foot, ... */
+static const double foot_share = 0.03;  /* over the soil, and near_share more: points so low are the foot, ... */
 static const double widest_foot = 0.04; /* ... where half of them lie within so much of its middle */
 static const double near_share = 0.015; /* from the base to the soil, at most, and so many times the noise: */
 static const double near_noise = 4;
