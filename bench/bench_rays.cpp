@@ -213,7 +213,7 @@ int main(int count, char **arguments)
     plm_error error;
     plm_virtual_plant plant;
     plm_stage_set stage = {};
-    const plm_plant_options grow = {1, 0.05};
+    const plm_plant_options grow = {1, 0.05, false};
     plm_scan_options dome = {};
     dome.scanner = PLM_SCANNER_DOME;
     dome.seed = 1;

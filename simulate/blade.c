@@ -56,7 +56,7 @@ static double radius_around(const plm_blade_spec *spec, double centre, double a)
     }
     if (spec->tooth_count > 0) lobes *= 1 - spec->tooth_depth * 0.5 * (1 - cos(spec->tooth_count * a));
     const double egg = 0.5 * (front + back) + 0.5 * (front - back) * cos(a);
-    const double round = egg * lobes, away = PLM_PI - fabs(a), width = 0.35;
+    const double round = egg * lobes, away = PLM_PI - fabs(a), width = spec->sinus_width > 0 ? spec->sinus_width : 0.35;
     const double dip = exp(-(away / width) * (away / width));
     return round * (1 - dip) + centre * dip;
 }

@@ -22,6 +22,7 @@ typedef struct plm_blade_spec {
     double lobe_depth;     /* 0 to 1 */
     double lobe_power;     /* palmate: below 1 round lobes, above 1 pointed ones */
     double sinus;          /* palmate: how far the basal lobes reach back, share of the length */
+    double sinus_width;    /* palmate: of the gap between them, radians about the centre; 0 means 0.35 */
     int tooth_count;       /* a side (margins), all around (palmate) */
     double tooth_depth;    /* 0 to 1 */
     double asymmetry;      /* -1 to 1: the left half is wider */

@@ -13,9 +13,13 @@ static void fail_with(plm_builder *builder, plm_status status)
 void plm_builder_start(plm_builder *builder, const char *kind, const plm_plant_options *options,
                        plm_virtual_plant *plant, plm_error *error)
 {
-    *builder =
-        (plm_builder){.plant = plant, .error = error, .resolution = options->resolution, .organ = -1, .leaflet = -1};
-    *plant = (plm_virtual_plant){.seed = options->seed, .has_petioles = true};
+    *builder = (plm_builder){.plant = plant,
+                             .error = error,
+                             .resolution = options->resolution,
+                             .is_arched = options->is_arched,
+                             .organ = -1,
+                             .leaflet = -1};
+    *plant = (plm_virtual_plant){.seed = options->seed, .is_arched = options->is_arched, .has_petioles = true};
     strncpy(plant->kind, kind, sizeof plant->kind - 1);
     uint64_t stream = 0;
     for (const char *c = kind; *c; c++) stream = stream * 131 + (uint64_t)*c;

@@ -57,6 +57,7 @@ typedef struct plm_builder {
     plm_virtual_plant *plant;
     plm_random random;
     double resolution;
+    bool is_arched;
     plm_status status;
     plm_error *error;
     size_t vertex_room, triangle_room, leaf_room, leaflet_room, petiole_room, stem_room;

@@ -106,6 +106,9 @@ static const seedling cucumber = {.height = {0.08, 0.19},
                                   .teeth = 36,
                                   .turn = 144};
 
+static const range arched_sinus = {0.15, 0.35};
+static const double narrow_sinus = 0.3; /* deeper ones */
+
 static void grow_cotyledons(plm_builder *builder, const seedling *kind, const plm_disposition *habit, double node,
                             double stem_radius, double azimuth)
 {
@@ -132,8 +135,8 @@ static void grow_cotyledons(plm_builder *builder, const seedling *kind, const pl
 }
 
 /* Blade of true leaf number k of count: the middle ones are largest, the last ones still unfold. */
-static void draw_true_blade(plm_random *random, const seedling *kind, const plm_disposition *habit, double length,
-                            double slim, int lobes, double lobe_depth, plm_blade_spec *blade)
+static void draw_true_blade(plm_random *random, bool is_arched, const seedling *kind, const plm_disposition *habit,
+                            double length, double slim, int lobes, double lobe_depth, plm_blade_spec *blade)
 {
     *blade = (plm_blade_spec){.length = length, .is_palmate = kind->is_palmate};
     blade->width = length * slim * plm_between(random, 0.92, 1.08);
@@ -142,6 +145,10 @@ static void draw_true_blade(plm_random *random, const seedling *kind, const plm_
     if (kind->is_palmate) {
         blade->lobe_power = draw(random, kind->lobe_power);
         blade->sinus = draw(random, kind->sinus);
+        if (is_arched) {
+            blade->sinus = draw(random, arched_sinus);
+            blade->sinus_width = blade->sinus > narrow_sinus ? 0.2 : 0;
+        }
         blade->tooth_count = kind->teeth;
         blade->tooth_depth = draw(random, kind->tooth_depth);
     } else {
@@ -149,6 +156,15 @@ static void draw_true_blade(plm_random *random, const seedling *kind, const plm_
         blade->fall = draw(random, kind->fall);
     }
     plm_draw_blade_form(random, habit, blade);
+}
+
+/* Angles from zenith and bends like those of the development clouds' seedlings. */
+static void arch_petiole(plm_random *random, double youth, plm_leaf_spec *leaf)
+{
+    leaf->zenith = plm_draw_angle(random, 42, 56);
+    leaf->zenith -= youth * plm_draw_angle(random, 15, 28);
+    leaf->petiole_bend.pitch = plm_draw_angle(random, 12, 50);
+    leaf->petiole_bend.yaw = plm_draw_angle(random, -6, 6);
 }
 
 static void grow_true_leaves(plm_builder *builder, const seedling *kind, const plm_disposition *habit, int count,
@@ -170,10 +186,13 @@ static void grow_true_leaves(plm_builder *builder, const seedling *kind, const p
         leaf.petiole_flare = plm_between(random, 0, 0.3);
         leaf.petiole_bend.pitch = (1 - youth) * plm_draw_angle(random, -8, 30) * (0.4 + habit->droop);
         leaf.petiole_bend.yaw = plm_draw_angle(random, -12, 12);
-        draw_true_blade(random, kind, habit, largest * size * plm_between(random, 0.9, 1.1), slim, lobes, lobe_depth,
-                        &leaf.blade);
+        draw_true_blade(random, builder->is_arched, kind, habit, largest * size * plm_between(random, 0.9, 1.1), slim,
+                        lobes, lobe_depth, &leaf.blade);
         leaf.blade.base_width = 1.2 * leaf.petiole_tip_radius;
+        if (builder->is_arched) arch_petiole(random, youth, &leaf);
         plm_aim_blade(&leaf, plm_draw_angle(random, 58, 88) - youth * plm_draw_angle(random, 5, 35));
+        if (builder->is_arched)
+            leaf.pitch = plm_draw_angle(random, 0, 22); /* the blade goes on where the petiole leads */
         leaf.roll = plm_draw_angle(random, -14, 14);
         plm_build_leaf(builder, 0, node[k], &leaf);
     }

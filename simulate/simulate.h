@@ -84,6 +84,7 @@ typedef struct plm_true_plant {
 typedef struct plm_virtual_plant {
     char kind[32];
     uint64_t seed;
+    bool is_arched;        /**< grown so, see plm_plant_options */
     plm_mesh mesh;         /**< face_organ is set: number within the class */
     uint8_t *face_label;   /**< plm_label of every triangle */
     int32_t *face_leaflet; /**< number of the leaflet from 1, -1 for none */
@@ -101,6 +102,8 @@ typedef struct plm_virtual_plant {
 typedef struct plm_plant_options {
     uint64_t seed;
     double resolution; /**< 1: some 5 000 faces a leaf; lengths of edges go with 1 / resolution. 0 means 1 */
+    bool
+        is_arched; /**< seedlings: petioles leave the stem steeply and arch, blades follow them; deep sinuses of lobed ones */
 } plm_plant_options;
 
 /** A kind of plant that can be grown. */

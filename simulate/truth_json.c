@@ -322,6 +322,7 @@ plm_status plm_truth_write(const char *path, const char *plant_id, const plm_vir
     put_text(object, "plant_id", plant_id);
     put_text(object, "kind", plant->kind);
     put(object, "seed", json_integer((json_int_t)plant->seed));
+    if (plant->is_arched) put(object, "arched", json_true());
     put_text(object, "unit", "m");
     put_text(object, "angle_unit", "deg");
     put(object, "plant", plant_object(plant));

@@ -14,7 +14,7 @@ typedef struct simulate_settings {
     uint64_t seed;
     int image_width;
     double density, noise, outliers, resolution, axis_tilt, axis_shift;
-    bool has_pot, has_table, is_quiet, has_views_out;
+    bool has_pot, has_table, is_arched, is_quiet, has_views_out;
     const char *output;
 } simulate_settings;
 
@@ -117,6 +117,10 @@ static const plm_option options[] = {
      AT(resolution),
      .minimum = 0.02,
      .maximum = 8},
+    {.name = "arched",
+     .help = "seedlings: petioles leave the stem steeply and arch; okra and cucumber: deep sinuses",
+     .kind = PLM_OPTION_FLAG,
+     AT(is_arched)},
     {.name = "format",
      .argument = "ply|3dgs|pcd|xyz|csv",
      .help = "of the cloud without labels (default: ply)",
@@ -238,7 +242,8 @@ static void forget_points(plm_scan *scan)
 static plm_status make_plant(const simulate_settings *settings, simulated *row, char **readings, plm_error *error)
 {
     plm_virtual_plant plant = {0};
-    const plm_plant_options grow = {.seed = row->seed, .resolution = settings->resolution};
+    const plm_plant_options grow = {
+        .seed = row->seed, .resolution = settings->resolution, .is_arched = settings->is_arched};
     plm_scan_options scan = scan_options(settings, row->seed);
     char views[4096];
     const bool has_scan = settings->scanner != PLM_SCANNER_NONE;

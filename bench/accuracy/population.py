@@ -50,6 +50,8 @@ def make_plants(options, out):
             command += ["--noise", str(options.noise)]
         if mode == "rgbd" and options.image_width:
             command += ["--image-width", str(options.image_width)]
+        if options.arched:
+            command += ["--arched"]
         subprocess.run(command, check=True)
         folders.append(folder)
     return folders
@@ -213,6 +215,7 @@ def main():
     parser.add_argument("--points", type=int, default=45000)
     parser.add_argument("--noise", type=float, default=0.5)
     parser.add_argument("--image-width", type=int, help="of depth cameras: the wider, the more pixels a voxel has")
+    parser.add_argument("--arched", action="store_true", help="seedlings with arched petioles and deep sinuses")
     parser.add_argument("--folder", nargs="+")
     parser.add_argument("--bounds")
     options = parser.parse_args()

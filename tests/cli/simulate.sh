@@ -14,6 +14,12 @@ ls splat
 echo 'the mesh alone:'
 simulate -q bare_stem --scanner none -o mesh
 ls mesh
+echo 'arched, which the truth says:'
+simulate -q cucumber --arched --scanner none -o arched
+simulate -q cucumber --scanner none -o straight
+[ -s arched/cucumber_3_mesh.mesh.ply ] || echo missing
+cmp -s arched/cucumber_3_mesh.mesh.ply straight/cucumber_3_mesh.mesh.ply || echo another plant
+grep -l '"arched": true' arched/*.truth.json straight/*.truth.json
 echo 'what cannot be:'
 simulate tomatoe -o wrong
 simulate pepper --format 3dgs -o wrong

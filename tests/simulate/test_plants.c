@@ -49,6 +49,38 @@ static void a_seed_gives_one_plant_and_another_seed_another(void **state)
     plm_virtual_plant_free(&other);
 }
 
+/* Largest bend of a plant's true petioles, 1 less their chord over their length. */
+static double largest_arch(const plm_virtual_plant *plant)
+{
+    double most = 0;
+    for (size_t k = 0; k < plant->petiole_count; k++)
+        if (plant->leaf[k].role == PLM_LEAF_TRUE)
+            most = fmax(most, 1 - plant->petiole[k].chord / plant->petiole[k].length);
+    return most;
+}
+
+static void petioles_arch_where_asked_for(void **state)
+{
+    (void)state;
+    static const char *const kind[] = {"eggplant", "pepper", "okra", "cucumber"};
+    for (size_t k = 0; k < COUNT(kind); k++) {
+        double straight = 0, arched = 0;
+        for (uint64_t seed = 1; seed <= 4; seed++) {
+            plm_error error = {0};
+            plm_virtual_plant plant = grow(kind[k], seed, 0.1), other;
+            const plm_plant_options options = {.seed = seed, .resolution = 0.1, .is_arched = true};
+            assert_ok(plm_plant_grow(kind[k], &options, &other, &error));
+            assert_int_equal(plant.leaf_count, other.leaf_count);
+            straight += largest_arch(&plant) / 4;
+            arched += largest_arch(&other) / 4;
+            plm_virtual_plant_free(&plant);
+            plm_virtual_plant_free(&other);
+        }
+        print_message("%s: %.4f and %.4f of the length\n", kind[k], straight, arched);
+        assert_true(arched > 0.015 && arched > 1.5 * straight);
+    }
+}
+
 static void seedlings_have_the_sizes_of_the_seedling_paper(void **state)
 {
     (void)state;
@@ -150,6 +182,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_grows_with_organs_that_its_faces_name),
         cmocka_unit_test(a_seed_gives_one_plant_and_another_seed_another),
+        cmocka_unit_test(petioles_arch_where_asked_for),
         cmocka_unit_test(seedlings_have_the_sizes_of_the_seedling_paper),
         cmocka_unit_test(large_plants_have_the_organs_of_the_laser_scanning_paper),
         cmocka_unit_test(petioles_leave_the_stem_at_its_surface),
