@@ -19,9 +19,10 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
 typedef struct plm_base_view {
     size_t count;
     double (*place)[3];
-    double scale;  /**< R */
-    double radius; /**< of the petiole */
-    double noise;
+    double scale;     /**< R */
+    double radius;    /**< of the petiole */
+    double noise;     /**< across the blade */
+    double blur;      /**< along it */
     double gathering; /**< of voxel means (cloud/sampling.h), else 0 */
 } plm_base_view;
 
@@ -47,6 +48,9 @@ void plm_base_any(double share[PLM_BASE_OUTLINES]);
 
 /** Shares of the outlines among the sides of all leaves of a plant (see base_shares.c). */
 void plm_base_shares(const plm_base_table *const *table, size_t count, double share[PLM_BASE_OUTLINES]);
+
+/** SD of points along a blade, by what they have across it and by their voxels' edge (0: what they have across it). */
+double plm_base_blur(double noise, double pitch);
 
 /** Logarithm of how likely a row is where outlines have such shares. */
 double plm_base_evidence(const plm_base_table *table, int row, const double share[PLM_BASE_OUTLINES]);

@@ -5,14 +5,14 @@
 #include "cloud/cloud.h"
 
 typedef struct plm_scale {
-    double size;        /**< diagonal of the box of the 0.5 to 99.5 % quantiles */
-    double spacing;     /**< median distance of nearest neighbours, thinned */
-    double noise;       /**< sigma across surfaces */
-    double gathering;   /**< of voxel means (cloud/sampling.h), where a stage asked for it; else 0 */
-    double radius;      /**< R */
-    double stem_radius; /**< 75 % quantile of the radii of tube-like points */
-    double tube_length; /**< of all tube-like points together, at R */
-    bool has_tubes;     /**< long enough, and with enough of them on rings */
+    double size;             /**< diagonal of the box of the 0.5 to 99.5 % quantiles */
+    double spacing;          /**< median distance of nearest neighbours, thinned */
+    double noise;            /**< sigma across surfaces */
+    double pitch, gathering; /**< of voxel means (cloud/sampling.h), where a stage asked for them; else 0 */
+    double radius;           /**< R */
+    double stem_radius;      /**< 75 % quantile of the radii of tube-like points */
+    double tube_length;      /**< of all tube-like points together, at R */
+    bool has_tubes;          /**< long enough, and with enough of them on rings */
     bool
         is_doubtful; /**< so few tubes that they may be folds and rims of a single leaf as well; then has_tubes is false as found here */
     bool is_blurred; /**< so few and noisy points for the size that a rosette's petioles hardly show as tubes */

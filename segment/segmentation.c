@@ -143,15 +143,16 @@ static plm_status is_rosette(const plm_sketch *sketch, bool *answer, plm_error *
     return PLM_OK;
 }
 
-/* How strongly the points gather in voxels; 0 where they are no voxel means. */
-static plm_status find_gathering(const float (*xyz)[3], size_t count, double *gathering, plm_error *error)
+/* The voxels whose means the points are, and how strongly these gather in them; 0 where they are none. */
+static plm_status find_voxels(const float (*xyz)[3], size_t count, plm_scale *scale, plm_error *error)
 {
     plm_index *index = NULL;
     plm_sampling sampling = {0};
     plm_status status = plm_index_build(xyz, count, &index, error);
     if (status == PLM_OK) status = plm_sampling_measure(index, xyz, count, NULL, &sampling, error);
     if (status == PLM_OK) status = plm_voxels_measure(xyz, count, &sampling, error);
-    *gathering = sampling.gathering;
+    scale->gathering = sampling.gathering;
+    scale->pitch = sampling.gathering > 0 ? sampling.pitch : 0;
     plm_index_free(index);
     return status;
 }
@@ -164,7 +165,7 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
     plm_status status = PLM_OK;
     if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
     if (sketch->habit == PLM_HABIT_COMPOUND) return status;
-    if (status == PLM_OK) status = find_gathering(xyz, count, &sketch->scale.gathering, error);
+    if (status == PLM_OK) status = find_voxels(xyz, count, &sketch->scale, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
     return status;
 }

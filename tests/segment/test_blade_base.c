@@ -84,7 +84,8 @@ static double largest_error(const base_shape *shape, double density, double nois
         plm_error error = {0};
         double found;
         const size_t count = make_leaf(shape, built, density, noise, (uint64_t)(k + 3), place);
-        const plm_base_view view = {.count = count, .place = place, .scale = R, .radius = TUBE, .noise = noise};
+        const plm_base_view view = {
+            .count = count, .place = place, .scale = R, .radius = TUBE, .noise = noise, .blur = noise};
         assert_ok(find_base(&view, 0, &found, &error));
         assert_true(isfinite(found));
         largest = fmax(largest, 1e3 * fabs(found - built));
@@ -124,7 +125,8 @@ static void a_first_guess_far_off_is_not_trusted(void **state)
         const size_t all = make_leaf(&sinus, built, 2, 0.0005, (uint64_t)(k + 40), place);
         for (size_t i = 0; i < all; i++) /* of the petiole, 1.2 R are seen */
             if (place[i][0] > -1.2 * R) memcpy(place[count++], place[i], sizeof *place);
-        const plm_base_view view = {.count = count, .place = place, .scale = R, .radius = TUBE, .noise = 0.0005};
+        const plm_base_view view = {
+            .count = count, .place = place, .scale = R, .radius = TUBE, .noise = 0.0005, .blur = 0.0005};
         assert_ok(find_base(&view, 0, &found, &error));
         assert_true(isfinite(found));
         mean += 1e3 * (found - built) / LEAVES;
@@ -148,7 +150,8 @@ static void the_leaves_of_a_plant_begin_alike(void **state)
         bool told;
         built[k] = (1 + 0.1 * k) * R;
         const size_t count = make_leaf(&sinus, built[k], 2, 0.0006, (uint64_t)(k + 60), place);
-        const plm_base_view view = {.count = count, .place = place, .scale = R, .radius = TUBE, .noise = 0.0006};
+        const plm_base_view view = {
+            .count = count, .place = place, .scale = R, .radius = TUBE, .noise = 0.0006, .blur = 0.0006};
         assert_ok(plm_base_look(&view, 0, &table[k], &told, &error));
         assert_true(told);
         all[k] = &table[k];
@@ -231,6 +234,7 @@ static double fused_error(const base_shape *shape, bool told)
                                     .scale = R,
                                     .radius = TUBE,
                                     .noise = sampling.noise,
+                                    .blur = plm_base_blur(sampling.noise, told ? sampling.pitch : 0),
                                     .gathering = told ? sampling.gathering : 0};
         assert_ok(find_base(&view, 0, &found, &error));
         assert_true(isfinite(found));
@@ -239,6 +243,49 @@ static double fused_error(const base_shape *shape, bool told)
     }
     print_message("%s, fused, %s: %+.2f mm, RMS %.2f\n", shape->name, told ? "told" : "not told", mean, sqrt(squares));
     return sqrt(squares);
+}
+
+/* Mean error over leaves with a narrow sinus, in millimetres, whose pixels lie off along the blade by more than across it, as where the rays
+ * of depth cameras graze it and views are a little off each other; told is whether the search takes that for granted in voxel means. */
+static double grazed_error(bool told)
+{
+    static double place[MOST][3];
+    enum { LEAVES = 8 };
+    const base_shape narrow = {.name = "narrow lobes", .slope = 0.65, .bend = 0.05};
+    const double across = 0.0003, more = 0.0005;
+    double mean = 0;
+    for (int k = 0; k < LEAVES; k++) {
+        const double built = 0.1 * k * R;
+        plm_random random = {.key = plm_key((uint64_t)(k + 90), 1)};
+        plm_error error = {0};
+        double found;
+        plm_sampling sampling;
+        size_t count = make_leaf(&narrow, built, 40, across, (uint64_t)(k + 90), place);
+        for (size_t i = 0; i < count; i++)
+            for (int a = 0; a < 2; a++) place[i][a] += more * plm_draw_normal(&random);
+        count = fuse(place, count, 0.0009, &sampling);
+        const plm_base_view view = {.count = count,
+                                    .place = place,
+                                    .scale = R,
+                                    .radius = TUBE,
+                                    .noise = sampling.noise,
+                                    .blur = told ? plm_base_blur(sampling.noise, sampling.pitch) : sampling.noise,
+                                    .gathering = sampling.gathering};
+        assert_ok(find_base(&view, 0, &found, &error));
+        assert_true(isfinite(found));
+        mean += 1e3 * (found - built) / LEAVES;
+    }
+    print_message("narrow lobes, grazed, %s: %+.2f mm\n", told ? "told" : "not told", mean);
+    return mean;
+}
+
+static void rays_that_graze_a_blade_blur_its_edges(void **state)
+{
+    (void)state;
+    const double told = grazed_error(true), not_told = grazed_error(false);
+    assert_true(fabs(told) < 1.1);
+    assert_true(fabs(told) < 0.65 * fabs(not_told));
+    assert_float_equal(plm_base_blur(0.0003, 0), 0.0003, 0);
 }
 
 /* Bases without a sinus have no edges that fill it; their junction comes out 0.6 to 1.1 mm late. */
@@ -341,6 +388,7 @@ int main(void)
         cmocka_unit_test(the_leaves_of_a_plant_begin_alike),
         cmocka_unit_test(in_voxel_means_a_sinus_ends_where_it_ends),
         cmocka_unit_test(voxel_means_move_other_bases_little),
+        cmocka_unit_test(rays_that_graze_a_blade_blur_its_edges),
         cmocka_unit_test(too_little_tells_none),
         cmocka_unit_test(a_rosettes_small_blades_stay_as_they_are),
         cmocka_unit_test(a_rosettes_wide_blade_is_told_where_its_petiole_is_clear_of_noise),
