@@ -8,6 +8,7 @@
 #include "traits/axis.h"
 #include "traits/blurred_end.h"
 #include "traits/centre_line.h"
+#include "traits/line_blend.h"
 #include "traits/petiole_course.h"
 #include "traits/petiole_end.h"
 #include "traits/tube_fit.h"
@@ -154,6 +155,11 @@ static plm_status fit_line(const plm_tube_points *points, const double base[3], 
     return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, base, far, 3, spans, line, error);
 }
 
+static bool is_tube(const petiole *p, const plm_tube *tube)
+{
+    return fabs(tube->radius[1]) < tube->radius[0] && tube->radius[0] < 2 * p->line.distance;
+}
+
 /* Radius and noise from a tube about the line; where none fits, from the distances to the line: in noise and where one
  * side is seen they lie between 0.6 and 1.1 radii. */
 static plm_status fit_tube(petiole *p, plm_error *error)
@@ -165,9 +171,7 @@ static plm_status fit_tube(petiole *p, plm_error *error)
     const plm_status status =
         plm_tube_fit((const double(*)[3])p->points.xyz, p->points.count, &p->line.curve, true, &p->tube, error);
     if (status == PLM_E_MEMORY) return status;
-    if (status != PLM_OK || !(fabs(p->tube.radius[1]) < p->tube.radius[0]) ||
-        !(p->tube.radius[0] < 2 * p->line.distance))
-        return PLM_OK;
+    if (status != PLM_OK || !is_tube(p, &p->tube)) return PLM_OK;
     p->has_tube = true;
     p->radius = p->tube.radius[0];
     p->noise = p->tube.robust_sd;
@@ -254,6 +258,23 @@ static double ring_left(const petiole *p, const plm_curve *line, double t, doubl
     return (double)left / RING;
 }
 
+/* The points where most of the ring is outside of the stem; centred: without the bias that the oblique cut gives the centroids.
+ * Gives the least of their parameters on the line. */
+static double gather_free(const petiole *p, const plm_curve *line, bool centred, plm_tube_points *kept)
+{
+    double low = 1;
+    kept->count = 0;
+    for (size_t i = 0; i < p->points.count; i++) {
+        double mean[3] = {0};
+        const double t = plm_curve_foot(line, p->points.xyz[i]);
+        if (p->stem && ring_left(p, line, t, mean) < least_ring) continue;
+        for (int k = 0; k < 3; k++) kept->xyz[kept->count][k] = p->points.xyz[i][k] - (centred ? mean[k] : 0);
+        kept->count++;
+        low = fmin(low, t);
+    }
+    return low;
+}
+
 /* Takes off the bias that the oblique cut with the stem gives the centroids, leaves out the points where most of the ring
  * is gone, and fits again. */
 static plm_status refit_free_part(petiole *p, plm_error *error)
@@ -265,16 +286,8 @@ static plm_status refit_free_part(petiole *p, plm_error *error)
     plm_status status = PLM_OK;
     for (int round = 0; round < 2 && status == PLM_OK; round++) {
         const plm_curve line = p->line.curve;
-        double begin[3], far[3], low = 1;
-        kept.count = 0;
-        for (size_t i = 0; i < p->points.count; i++) {
-            double mean[3];
-            const double t = plm_curve_foot(&line, p->points.xyz[i]);
-            if (ring_left(p, &line, t, mean) < least_ring) continue;
-            for (int k = 0; k < 3; k++) kept.xyz[kept.count][k] = p->points.xyz[i][k] - mean[k];
-            kept.count++;
-            low = fmin(low, t);
-        }
+        double begin[3], far[3];
+        const double low = gather_free(p, &line, true, &kept);
         if (kept.count < FEWEST_POINTS || low > 0) break; /* too short to lose anything */
         plm_curve_point(&line, fmax(low, -1), begin);
         plm_curve_point(&line, 1, far);
@@ -288,6 +301,24 @@ static plm_status refit_free_part(petiole *p, plm_error *error)
     }
     plm_free(kept.xyz);
     return status;
+}
+
+/* A tube that plainly beats centroids has told already; elsewhere it tells a part, but of petioles too short to lose what the stem
+ * cuts. Where the labels are our own, petioles of a rosette lie on each other at their feet, where a tube fits none of them. */
+static plm_status blend_with_tube(petiole *p, plm_error *error)
+{
+    if (p->is_rosettes || !p->has_tube || line_of(p) == &p->tube.axis) return PLM_OK;
+    plm_tube_points kept = {.count = 0, .xyz = plm_alloc(p->points.count, sizeof *kept.xyz, error)};
+    if (!kept.xyz) return PLM_E_MEMORY;
+    const double low = gather_free(p, &p->line.curve, false, &kept);
+    plm_tube tube;
+    plm_status status = PLM_E_DEGENERATE;
+    if (kept.count >= FEWEST_TUBE_POINTS && low <= 0)
+        status = plm_tube_fit((const double(*)[3])kept.xyz, kept.count, &p->line.curve, true, &tube, error);
+    plm_free(kept.xyz);
+    if (status == PLM_E_MEMORY) return status;
+    if (status == PLM_OK && tube.converged && is_tube(p, &tube)) plm_line_blend(&p->line, &tube);
+    return PLM_OK;
 }
 
 /* ---- Ends ------------------------------------------------------------------------------------------------------- */
@@ -439,6 +470,7 @@ static plm_status fit(const plm_scene *scene, petiole *p, plm_axis *axis, plm_er
     if (status == PLM_OK) status = fit_line(&p->points, base, far, p->line.distance, &p->line, error);
     if (status == PLM_OK) status = fit_tube(p, error);
     if (status == PLM_OK && p->stem) status = refit_free_part(p, error);
+    if (status == PLM_OK) status = blend_with_tube(p, error);
     if (status == PLM_OK) status = finish(p, axis, error);
     return status;
 }
