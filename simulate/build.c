@@ -19,7 +19,7 @@ void plm_builder_start(plm_builder *builder, const char *kind, const plm_plant_o
                              .is_arched = options->is_arched,
                              .organ = -1,
                              .leaflet = -1};
-    *plant = (plm_virtual_plant){.seed = options->seed, .is_arched = options->is_arched, .has_petioles = true};
+    *plant = (plm_virtual_plant){.seed = options->seed, .has_petioles = true};
     strncpy(plant->kind, kind, sizeof plant->kind - 1);
     uint64_t stream = 0;
     for (const char *c = kind; *c; c++) stream = stream * 131 + (uint64_t)*c;

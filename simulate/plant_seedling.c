@@ -201,6 +201,7 @@ static void grow_true_leaves(plm_builder *builder, const seedling *kind, const p
 static void grow(plm_builder *builder, const seedling *kind)
 {
     plm_random *random = &builder->random;
+    builder->plant->is_arched = builder->is_arched;
     const plm_disposition habit = plm_draw_disposition(random);
     double node[PLM_TRUE_NODES_MAXIMUM];
     plm_curve axis;

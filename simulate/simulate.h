@@ -84,7 +84,7 @@ typedef struct plm_true_plant {
 typedef struct plm_virtual_plant {
     char kind[32];
     uint64_t seed;
-    bool is_arched;        /**< grown so, see plm_plant_options */
+    bool is_arched;        /**< a seedling that was grown so, see plm_plant_options */
     plm_mesh mesh;         /**< face_organ is set: number within the class */
     uint8_t *face_label;   /**< plm_label of every triangle */
     int32_t *face_leaflet; /**< number of the leaflet from 1, -1 for none */

@@ -118,7 +118,8 @@ static const plm_option options[] = {
      .minimum = 0.02,
      .maximum = 8},
     {.name = "arched",
-     .help = "seedlings: petioles leave the stem steeply and arch; okra and cucumber: deep sinuses",
+     .help = "seedlings: petioles leave the stem steeply and arch; okra and cucumber: deep sinuses; other kinds as "
+             "without it",
      .kind = PLM_OPTION_FLAG,
      AT(is_arched)},
     {.name = "format",

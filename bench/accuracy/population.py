@@ -2,7 +2,7 @@
 """Errors and coverage of all traits over a population of virtual plants, with the program's own labels and with true ones.
 
     population.py --program PLANTIMETER -o OUT [--kinds A,B] [--count N] [--seed S] [--modes clean,rgbd,splat]
-                  [--points N] [--noise MM] [--image-width PIXELS] [--bounds FILE]
+                  [--points N] [--noise MM] [--image-width PIXELS] [--arched] [--bounds FILE]
     population.py --program PLANTIMETER -o OUT --folder DIR...      plants that are there already, one folder a mode
 
 Makes N plants of each kind and mode by `plantimeter simulate`, measures each twice (own: segmented by the program; true:

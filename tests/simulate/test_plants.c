@@ -59,6 +59,20 @@ static double largest_arch(const plm_virtual_plant *plant)
     return most;
 }
 
+static void what_is_no_seedling_does_not_arch(void **state)
+{
+    (void)state;
+    plm_error error = {0};
+    plm_virtual_plant plant = grow("maize", 3, 0.1), asked;
+    const plm_plant_options options = {.seed = 3, .resolution = 0.1, .is_arched = true};
+    assert_ok(plm_plant_grow("maize", &options, &asked, &error));
+    assert_false(asked.is_arched);
+    assert_int_equal(plant.mesh.vertex_count, asked.mesh.vertex_count);
+    assert_memory_equal(plant.mesh.vertex, asked.mesh.vertex, plant.mesh.vertex_count * sizeof *plant.mesh.vertex);
+    plm_virtual_plant_free(&plant);
+    plm_virtual_plant_free(&asked);
+}
+
 static void petioles_arch_where_asked_for(void **state)
 {
     (void)state;
@@ -71,6 +85,7 @@ static void petioles_arch_where_asked_for(void **state)
             const plm_plant_options options = {.seed = seed, .resolution = 0.1, .is_arched = true};
             assert_ok(plm_plant_grow(kind[k], &options, &other, &error));
             assert_int_equal(plant.leaf_count, other.leaf_count);
+            assert_true(other.is_arched && !plant.is_arched);
             straight += largest_arch(&plant) / 4;
             arched += largest_arch(&other) / 4;
             plm_virtual_plant_free(&plant);
@@ -183,6 +198,7 @@ int main(void)
         cmocka_unit_test(every_kind_grows_with_organs_that_its_faces_name),
         cmocka_unit_test(a_seed_gives_one_plant_and_another_seed_another),
         cmocka_unit_test(petioles_arch_where_asked_for),
+        cmocka_unit_test(what_is_no_seedling_does_not_arch),
         cmocka_unit_test(seedlings_have_the_sizes_of_the_seedling_paper),
         cmocka_unit_test(large_plants_have_the_organs_of_the_laser_scanning_paper),
         cmocka_unit_test(petioles_leave_the_stem_at_its_surface),
