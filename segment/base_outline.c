@@ -2,8 +2,9 @@
  * that ends at the junction, and each side of the blade begins there: as a wedge ahead of it (a base that narrows to the
  * petiole), straight to the side, or with a lobe that reaches back and whose edge leaves the petiole by a slope and bends
  * away. The points are taken for a Poisson process whose density is that of the petiole in the strip, of the blade within
- * the outline, and little elsewhere, all blurred as points lie off along the blade (strips of it go by the noise across); the junction is the mean over what is likely, all outlines of
- * either side taken together by their shares among the plant's leaves (base_shares.c): the likeliest alone jumps between
+ * the outline, and little elsewhere, all blurred as points lie off along the blade (the strip's width and the outlines'
+ * swelling go by the noise across); the junction is the mean over what is likely, all outlines of either side taken
+ * together by their shares among the plant's leaves (base_shares.c): the likeliest alone jumps between
  * them. The first guess is good or, where deep lobes lie beside the petiole, far too early: its errors follow a Cauchy law.
  * Where the noise is small beside the petiole, that a tube is thick and a blade is not counts as well (base_thickness.c). */
 #include "segment/blade_base.h"

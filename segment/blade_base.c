@@ -27,10 +27,10 @@ static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines be
 static const double CLEAR_NOISE = 0.5;
 /* In R: a rosette's blades have no lobes beside the petiole that put the first guess farther off. Farther moves go to the tip. */
 static const double MOST_MOVE = 1;
-/* Of voxel means, in the voxels' edge: what edges are blurred by beside the noise across the blade. The noise of depth cameras lies along
- * their rays, which graze a blade more than they meet it, and views are a little off each other; both are about as large as a
- * point's place within a voxel is uncertain. Not of rosettes: their petioles end 0.15 mm late in the mean as it is, and 0.34 mm with it (48
- * virtual ones from depth cameras). */
+/* In the edge of voxels whose means the points are: what edges are blurred by beside the noise across the blade. The noise of
+ * depth cameras lies along their rays, which graze a blade more than they meet it, and views are a little off each other.
+ * Junctions are right in the mean with it (131 petioles of 20 mm and more; without it 0.2 mm early, with 0.33 0.1 mm late).
+ * Not of rosettes, whose petioles end 0.15 mm late as it is (48 virtual ones; 0.34 mm with 0.33). */
 static const double PITCH_ALONG = 0.25;
 enum { FEWEST_PETIOLE = 15, FEWEST_BLADE = 30, FEWEST_PIECE = 9, FEWEST_PLANE = 15, MOST_POINTS = 8000, ROUNDS = 2 };
 

@@ -21,9 +21,9 @@ static plm_status find_top(const plm_scene *scene, double least_noise, plm_extre
     return plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, ZENITH, &options, top, error);
 }
 
-/* The noise of the whole of a plant that may be a rosette, or 0: the few small leaves at its top and the petioles at its foot are narrower than what the
- * noise is measured by, and read a tenth to a third less. Where the plant may be a rosette the index that it is from is built
- * for the heights. In fused scans it differs between places. */
+/* The noise of the whole of a plant that may be a rosette, or 0: the few small leaves at its top and the petioles at its foot
+ * are narrower than what the noise is measured by, and read a tenth to a third less. The index that it is from is built for
+ * the heights then. In fused scans it differs between places. */
 static double noise_of_rosette(const plm_scene *scene)
 {
     return !scene->options->deadline && !scene->sampling.fused ? scene->sampling.noise : 0;
