@@ -6,6 +6,7 @@
 #include "cloud/linear.h"
 #include "traits/tube_fit.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MOST_POINTS = 6000, FEWEST_POINTS = 16 };
@@ -73,6 +74,14 @@ static plm_status window(const plm_organ *organ, double t, double reach, plm_tub
     return PLM_OK;
 }
 
+/* Fitted diameter of the stem that carries a petiole, a median over its length; INFINITY where none is known. */
+static double carrier_diameter(const plm_scene *scene, const plm_organ *organ)
+{
+    if (organ->label != PLM_LABEL_PETIOLE || organ->axis->carrier < 0) return INFINITY;
+    const plm_organ *stem = plm_scene_organ(scene, PLM_LABEL_STEM, organ->axis->carrier);
+    return stem && stem->axis && stem->axis->radius > 0 ? 2 * stem->axis->radius : INFINITY;
+}
+
 static plm_status fit_window(const plm_axis *axis, double t, double reach, const plm_tube_points *points,
                              plm_tube *tube, plm_error *error)
 {
@@ -117,6 +126,12 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
             "the points scatter by %.2f mm about a tube of %.2f mm (%.2f mm along the petiole): its "
             "ring is not resolved; a scan with less noise is needed",
             1e3 * tube.spread, 1e3 * fit, 2e3 * organ->axis->radius);
+    const double stem = carrier_diameter(scene, organ);
+    if (fit > stem)
+        return plm_trait_failed(out,
+                                "a tube of %.2f mm fits best, wider than the stem that carries the petiole (%.2f mm): "
+                                "it follows points that are not the petiole's",
+                                1e3 * fit, 1e3 * stem);
     plm_tube_deflate(fit, 2 * fit_error, tube.spread, &scene->sampling, &out->value, &out->std_error);
     if (out->value < unresolved * tube.spread) {
         out->flags |= PLM_FLAG_LOW_DENSITY;

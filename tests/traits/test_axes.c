@@ -16,7 +16,7 @@ static const double node[PETIOLES] = {0.04, 0.04, 0.07}; /* the first two stand 
 static const double inclination[PETIOLES] = {40, 65, 80};
 
 /* A vertical stem and straight petioles that start on its surface. No point lies inside of the stem. */
-static plm_cloud made_plant(double noise)
+static plm_cloud plant_with_petioles(double thickness, double noise)
 {
     plm_error error = {0};
     plm_cloud cloud;
@@ -29,7 +29,7 @@ static plm_cloud made_plant(double noise)
     for (int p = 0; p < PETIOLES; p++) {
         const double tilt = plm_radians(inclination[p]), heading = PLM_PI * p + 0.4;
         const double direction[3] = {sin(tilt) * cos(heading), sin(tilt) * sin(heading), cos(tilt)};
-        test_tube tube = {.radius = {petiole_radius, petiole_radius}, .arc = {0, 2 * PLM_PI}};
+        test_tube tube = {.radius = {thickness, thickness}, .arc = {0, 2 * PLM_PI}};
         const double surface[3] = {stem_radius * cos(heading), stem_radius * sin(heading), node[p]};
         for (int k = 0; k < 3; k++) { /* from inside the stem, so that the cut is oblique */
             tube.base[k] = surface[k] - 0.003 * direction[k];
@@ -47,6 +47,11 @@ static plm_cloud made_plant(double noise)
     }
     free(xyz);
     return cloud;
+}
+
+static plm_cloud made_plant(double noise)
+{
+    return plant_with_petioles(petiole_radius, noise);
 }
 
 static plm_measurement measure(plm_cloud *cloud)
@@ -106,6 +111,26 @@ static void fits_tell_steps_condition_and_end(void **unused)
     }
     assert_int_equal(find(&plant, "internode_length", 0)->fit.step_count, 0);
     plm_measurement_free(&plant);
+}
+
+/* Points of a blade or ghosts about a petiole fit a wide tube: wider than the stem is no petiole. A little less may be one. */
+static void a_tube_wider_than_its_stem_is_no_petioles_diameter(void **unused)
+{
+    (void)unused;
+    for (int wide = 0; wide < 2; wide++) {
+        const double radius = (wide ? 1.05 : 0.95) * stem_radius;
+        plm_cloud cloud = plant_with_petioles(radius, 0);
+        plm_measurement plant = measure(&cloud);
+        for (int p = 0; p < PETIOLES; p++) {
+            const plm_estimate *diameter = find(&plant, "petiole_diameter", p);
+            assert_int_equal(diameter->state, wide ? PLM_STATE_FAILED : PLM_STATE_OK);
+            if (wide)
+                assert_non_null(strstr(diameter->reason, "wider than the stem"));
+            else
+                assert_near(diameter->value, 2 * radius, 2e-5);
+        }
+        plm_measurement_free(&plant);
+    }
 }
 
 static void noise_is_covered_by_the_standard_errors(void **unused)
@@ -395,6 +420,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_clean_plant_is_measured_to_its_built_angles_and_lengths),
         cmocka_unit_test(fits_tell_steps_condition_and_end),
+        cmocka_unit_test(a_tube_wider_than_its_stem_is_no_petioles_diameter),
         cmocka_unit_test(a_petiole_ends_where_its_blade_begins),
         cmocka_unit_test(a_line_that_passes_the_stem_by_tells_no_base),
         cmocka_unit_test(a_foot_that_was_not_seen_is_within_the_error),
