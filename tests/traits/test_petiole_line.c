@@ -1,0 +1,117 @@
+/* The line of a petiole whose tube noise hides: as stiff as what is known of petioles. */
+#include "support/test.h"
+
+#include "cloud/linear.h"
+#include "support/tubes.h"
+#include "traits/axis.h"
+
+#include <math.h>
+
+enum { POINTS = 250, CROWD = 45, TRIALS = 40 };
+
+static const double LENGTH = 0.03, RADIUS = 0.0007, NOISE = 0.0005;
+
+/* Degrees between the fitted chord and the direction from base to end; the points are a petiole without stem. */
+static double fitted_off(double (*xyz)[3], size_t count, plm_habit habit, const double base[3], const double end[3])
+{
+    static float near[POINTS + CROWD][3];
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) near[i][k] = (float)xyz[i][k];
+    plm_error error = {0};
+    plm_cloud cloud = {.count = count};
+    plm_organ organ = {.label = PLM_LABEL_PETIOLE, .count = count, .xyz = near};
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) organ.centroid[k] += xyz[i][k] / (double)count;
+    const plm_scene scene = {.cloud = &cloud, .habit = habit, .organ = &organ, .organ_count = 1};
+    plm_axis axis;
+    assert_ok(plm_petiole_axis_fit(&scene, &organ, &axis, &error));
+    double chord[3], cross[3];
+    for (int k = 0; k < 3; k++) chord[k] = end[k] - base[k];
+    plm_normalise(chord);
+    plm_cross(chord, axis.direction, cross);
+    return plm_degrees(atan2(plm_norm(cross), plm_dot(chord, axis.direction)));
+}
+
+static double root_mean_square(double squares)
+{
+    return sqrt(squares / TRIALS);
+}
+
+/* A spline through a noisy arch swings at its ends, by which the direction goes. */
+static void the_line_of_a_noisy_arch_is_steady_at_its_ends(void **unused)
+{
+    (void)unused;
+    double squares = 0;
+    for (uint64_t trial = 1; trial <= TRIALS; trial++) {
+        static double xyz[POINTS][3];
+        uint64_t state = trial;
+        const test_tube tube = {.end = {0.6 * LENGTH, 0, 0.8 * LENGTH},
+                                .bow = 0.05 * LENGTH,
+                                .radius = {RADIUS, RADIUS},
+                                .arc = {0, 2 * PLM_PI},
+                                .noise = NOISE};
+        test_tube_points(&tube, POINTS, &state, xyz);
+        const double off = fitted_off(xyz, POINTS, PLM_HABIT_SIMPLE, tube.base, tube.end);
+        squares += off * off;
+    }
+    print_message("%.2f degrees\n", root_mean_square(squares));
+    assert_true(root_mean_square(squares) < 0.8);
+}
+
+/* Half of it straight, the other half bent off by 70 degrees: no parabola. */
+static void a_hooked_petiole_is_no_parabola(void **unused)
+{
+    (void)unused;
+    double squares = 0;
+    for (uint64_t trial = 1; trial <= TRIALS; trial++) {
+        static double xyz[POINTS][3];
+        uint64_t state = trial;
+        const double bent = plm_radians(70), end[3] = {LENGTH * sin(bent) / 3, 0, LENGTH * (2 + cos(bent)) / 3};
+        const test_tube shaft = {
+            .end = {0, 0, 2 * LENGTH / 3}, .radius = {RADIUS, RADIUS}, .arc = {0, 2 * PLM_PI}, .noise = NOISE};
+        test_tube hook = shaft;
+        for (int k = 0; k < 3; k++) hook.base[k] = shaft.end[k], hook.end[k] = end[k];
+        test_tube_points(&shaft, 2 * POINTS / 3, &state, xyz);
+        test_tube_points(&hook, POINTS - 2 * POINTS / 3, &state, xyz + 2 * POINTS / 3);
+        const double off = fitted_off(xyz, POINTS, PLM_HABIT_SIMPLE, shaft.base, end);
+        squares += off * off;
+    }
+    print_message("%.2f degrees\n", root_mean_square(squares));
+    assert_true(root_mean_square(squares) < 3);
+}
+
+/* The first 2 mm of a rosette's lowest petioles lie under the feet of the others, and have points of those. */
+static void what_lies_on_the_feet_does_not_lift_them(void **unused)
+{
+    (void)unused;
+    double squares = 0;
+    for (uint64_t trial = 1; trial <= TRIALS; trial++) {
+        static double xyz[POINTS + CROWD][3];
+        uint64_t state = trial;
+        const test_tube petiole = {.end = {LENGTH / 3, 0, 0.25 * LENGTH / 3},
+                                   .radius = {RADIUS, RADIUS},
+                                   .arc = {0, 2 * PLM_PI},
+                                   .noise = NOISE};
+        const test_tube above = {.base = {0.0002, 0, 0.0005},
+                                 .end = {0.0012, 0, 0.0025},
+                                 .radius = {RADIUS, RADIUS},
+                                 .arc = {0, 2 * PLM_PI},
+                                 .noise = NOISE};
+        test_tube_points(&petiole, POINTS, &state, xyz);
+        test_tube_points(&above, CROWD, &state, xyz + POINTS);
+        const double off = fitted_off(xyz, POINTS + CROWD, PLM_HABIT_ROSETTE, petiole.base, petiole.end);
+        squares += off * off;
+    }
+    print_message("%.2f degrees\n", root_mean_square(squares));
+    assert_true(root_mean_square(squares) < 3.6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_line_of_a_noisy_arch_is_steady_at_its_ends),
+        cmocka_unit_test(a_hooked_petiole_is_no_parabola),
+        cmocka_unit_test(what_lies_on_the_feet_does_not_lift_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
