@@ -30,7 +30,8 @@ double plm_stem_angle(const plm_axis *stem, const plm_curve *line, double t)
 
 double plm_stem_crossing(const plm_axis *stem, const plm_curve *line, double t, double low)
 {
-    const double step = 0.25 * stem->radius / line->half;
+    const double step =
+        0.25 * fmax(stem->radius, 1e-3 * line->half) / line->half; /* a stem of no width has an end, too */
     double point[3], foot, outer = t, before = INFINITY;
     for (;; outer -= step) {
         plm_curve_point(line, outer, point);

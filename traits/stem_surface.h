@@ -16,7 +16,7 @@ double plm_stem_angle(const plm_axis *stem, const plm_curve *line, double t);
 double plm_stem_crossing(const plm_axis *stem, const plm_curve *line, double t, double low);
 
 /** Where the stem cuts a tube obliquely only a part of its ring is left: the share of the ring of a radius about the line at t
- * that lies outside of the stem (by the margin), and the mean of that part, from the line. */
+ * that lies outside of the stem (by the margin), and the mean of that part, from the line (0 where all is left). */
 double plm_stem_ring_left(const plm_axis *stem, const plm_curve *line, double t, double radius, double margin,
                           double mean[3]);
 

@@ -74,12 +74,12 @@ static plm_status window(const plm_organ *organ, double t, double reach, plm_tub
     return PLM_OK;
 }
 
-/* Fitted diameter of the stem that carries a petiole, a median over its length; INFINITY where none is known. */
+/* Diameter of the tube that fits the stem which carries a petiole, a median over its length; INFINITY where there is none. */
 static double carrier_diameter(const plm_scene *scene, const plm_organ *organ)
 {
     if (organ->label != PLM_LABEL_PETIOLE || organ->axis->carrier < 0) return INFINITY;
     const plm_organ *stem = plm_scene_organ(scene, PLM_LABEL_STEM, organ->axis->carrier);
-    return stem && stem->axis && stem->axis->radius > 0 ? 2 * stem->axis->radius : INFINITY;
+    return stem && stem->axis && isfinite(stem->axis->radius_error) ? 2 * stem->axis->radius : INFINITY;
 }
 
 static plm_status fit_window(const plm_axis *axis, double t, double reach, const plm_tube_points *points,
@@ -127,7 +127,7 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
             "ring is not resolved; a scan with less noise is needed",
             1e3 * tube.spread, 1e3 * fit, 2e3 * organ->axis->radius);
     const double stem = carrier_diameter(scene, organ);
-    if (fit > stem)
+    if (fit - 2 * fit_error > stem)
         return plm_trait_failed(out,
                                 "a tube of %.2f mm fits best, wider than the stem that carries the petiole (%.2f mm): "
                                 "it follows points that are not the petiole's",
