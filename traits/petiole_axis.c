@@ -25,7 +25,7 @@ static const double end_share = 0.02;    /* points that stand for an end at the 
 static const double radii_per_span = 25;
 /* Times the square scatter about the spline that a parabola may have, where centroids give the line. Beyond, the petiole is bent otherwise
  * (1.03 to 1.2 are alike to 0.1 degrees of RMSE over 430 virtual petioles). */
-static const double otherwise = 1.1;
+static const double most_unlike = 1.1;
 static const double spline_share = 0.5; /* of what parabola and spline are apart, in the standard error */
 /* Petioles of a rosette lie on each other at their feet, and points of others draw the line up there: what lies so near to the
  * foot, in radii, but not more than this share of the length, does not give the line (464 virtual petioles: 2 to 4 radii are alike). */
@@ -145,10 +145,10 @@ static void first_ends(petiole *p, double base[3], double far[3])
 
 /* ---- The line --------------------------------------------------------------------------------------------------- */
 
-static plm_status fit_line(const petiole *p, const plm_tube_points *points, const double base[3], const double far[3],
+static plm_status fit_line(const plm_tube_points *points, const double base[3], const double far[3], double radius,
                            plm_centre_line *line, plm_error *error)
 {
-    const int spans = (int)fmin(fmax(plm_distance(base, far) / (radii_per_span * p->radius), 1), MOST_SPANS);
+    const int spans = (int)fmin(fmax(plm_distance(base, far) / (radii_per_span * radius), 1), MOST_SPANS);
     return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, base, far, 3, spans, line, error);
 }
 
@@ -225,7 +225,7 @@ static plm_status refit_free_part(petiole *p, plm_error *error)
         plm_curve_point(&line, fmax(low, -1), begin);
         plm_curve_point(&line, 1, far);
         plm_centre_line again;
-        status = fit_line(p, &kept, begin, far, &again, error);
+        status = fit_line(&kept, begin, far, p->radius, &again, error);
         if (status == PLM_OK) p->line = again;
         if (status == PLM_E_DEGENERATE) { /* the line before stands */
             status = PLM_OK;
@@ -281,7 +281,7 @@ static plm_status stiffen(petiole *p, plm_error *error)
     const size_t count = kept.count;
     plm_free(kept.xyz);
     if (status == PLM_OK &&
-        (p->is_rosettes || free_scatter(&stiff, count) < otherwise * free_scatter(&p->line, count))) {
+        (p->is_rosettes || free_scatter(&stiff, count) < most_unlike * free_scatter(&p->line, count))) {
         p->shape_error = hypot(p->own ? 0 : parabola_error, spline_share * chords_apart(&stiff.curve, &p->line.curve));
         p->line = stiff;
     }
@@ -445,8 +445,7 @@ static plm_status fit(const plm_scene *scene, petiole *p, plm_axis *axis, plm_er
     if (status == PLM_OK)
         status =
             plm_centre_line_fit((const double(*)[3])p->points.xyz, p->points.count, base, far, 1, 1, &p->line, error);
-    p->radius = p->line.distance;
-    if (status == PLM_OK) status = fit_line(p, &p->points, base, far, &p->line, error);
+    if (status == PLM_OK) status = fit_line(&p->points, base, far, p->line.distance, &p->line, error);
     if (status == PLM_OK) status = fit_tube(p, error);
     if (status == PLM_OK && p->stem) status = refit_free_part(p, error);
     if (status == PLM_OK && line_of(p) == &p->line.curve) status = stiffen(p, error);

@@ -127,7 +127,7 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
             "ring is not resolved; a scan with less noise is needed",
             1e3 * tube.spread, 1e3 * fit, 2e3 * organ->axis->radius);
     const double stem = carrier_diameter(scene, organ);
-    if (fit - 2 * fit_error > stem)
+    if (fit - 2 * fit_error > stem) /* by more than the diameter's standard error */
         return plm_trait_failed(out,
                                 "a tube of %.2f mm fits best, wider than the stem that carries the petiole (%.2f mm): "
                                 "it follows points that are not the petiole's",
