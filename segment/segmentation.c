@@ -6,6 +6,7 @@
 #include "segment/blade_base.h"
 #include "segment/head.h"
 #include "segment/petiole_foot.h"
+#include "segment/rosette_borders.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
 
@@ -167,6 +168,8 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
     if (sketch->habit == PLM_HABIT_COMPOUND) return status;
     if (status == PLM_OK) status = find_voxels(xyz, count, &sketch->scale, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE)
+        status = plm_rosette_borders(xyz, row, count, sketch, out, error);
     return status;
 }
 

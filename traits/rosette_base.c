@@ -1,12 +1,14 @@
 /* traits/rosette_base.c: the lowest surface of a rosette is the underside of its lowest petiole where all of them meet, which
- * the others hide. Each petiole says where that would be: its line prolonged to the plant's foot, less its radius. The least of
- * unsure values is too low: so each is drawn towards their mean as far as it is unsure (empirical Bayes), and the expected least
- * one is taken. Condition: length of the prolonged petiole over that of the seen one. */
+ * the others hide, and the noise of the soil below it. Each petiole says where that would be: its line prolonged to the plant's
+ * foot, less its radius. The least of unsure values is too low: so each is drawn towards their mean as far as it is unsure
+ * (empirical Bayes), and the expected least one is taken; soil that is seen tells as well. Condition: length of the prolonged
+ * petiole over that of the seen one. */
 #include "traits/rosette_base.h"
 
 #include "cloud/linear.h"
 #include "traits/axis.h"
 #include "traits/plant_foot.h"
+#include "traits/soil_base.h"
 #include "traits/tube_diameter.h"
 
 #include <math.h>
@@ -14,7 +16,10 @@
 enum { FEWEST_PETIOLES = 3, NEWTON_STEPS = 8, INTEGRAL_STEPS = 400 };
 
 static const double low_share = 0.45; /* height over width: virtual rosettes have 0.2 to 0.4 */
-static const double tail = 6;         /* SD beyond which a normal value is not looked for */
+static const double stands = 3;       /* petiole's radii from the soil up to the plant's underside, at most */
+/* What was seen ends so many SDs of the noise above that, at most, and what soil and petioles tell are so many standard errors apart. */
+static const double near_noise = 4, most_apart = 3;
+static const double tail = 6; /* SD beyond which a normal value is not looked for */
 /* Part of the noise that stays in all radii as a common error, as in an extreme of the surface. */
 static const double noise_unknown = 0.5;
 
@@ -34,7 +39,8 @@ bool plm_may_be_rosette(const plm_scene *scene)
 /** The height of the plant's underside as a petiole tells it. */
 typedef struct underside {
     double height, std_error;
-    double noise; /* of the petiole's points */
+    double noise;  /* of the petiole's points */
+    double radius; /* of the petiole */
 } underside;
 
 /* Parameter at which a petiole's line comes nearest to a vertical one. */
@@ -68,7 +74,8 @@ static bool underside_of(const plm_scene *scene, const plm_axis *axis, const dou
     const double off = hypot(hypot(at[0] - foot[0], at[1] - foot[1]), shift);
     *out = (underside){.height = at[2] - 0.5 * diameter * flat,
                        .std_error = hypot(off, hypot(axis->direction_error * lever, 0.5 * diameter_error)),
-                       .noise = axis->noise};
+                       .noise = axis->noise,
+                       .radius = 0.5 * diameter};
     return behind < axis->length && isfinite(out->height) && isfinite(out->std_error) && out->std_error > 0;
 }
 
@@ -110,7 +117,7 @@ static underside least_of(const underside *side, size_t count)
         high = fmin(high, side[i].height + tail * side[i].std_error);
         noise += side[i].noise / (double)count;
     }
-    if (!(high > low)) return (underside){low, 0, noise}; /* all alike */
+    if (!(high > low)) return (underside){low, 0, noise, 0}; /* all alike */
     const double step = (high - low) / INTEGRAL_STEPS;
     double mean = 0, squares = 0; /* of the least value over low */
     for (int k = 0; k < INTEGRAL_STEPS; k++) {
@@ -120,17 +127,48 @@ static underside least_of(const underside *side, size_t count)
             above *= 0.5 * erfc((low + over - side[i].height) / (sqrt(2) * side[i].std_error));
         mean += above * step, squares += 2 * over * above * step;
     }
-    return (underside){low + mean, sqrt(fmax(squares - mean * mean, 0)), noise};
+    return (underside){low + mean, sqrt(fmax(squares - mean * mean, 0)), noise, 0};
 }
 
-/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing. Where it lies lower
- * than is told, or is known better, it stays: false. */
-static bool join(const underside *told, plm_extreme *base)
+/* Where the soil about the foot is seen, and what was seen of the plant ends near it, the rosette stands on it: the underside of its
+ * lowest petiole is somewhere between the soil and `stands` of a petiole's radii above it (the least of radii: points of others make
+ * petioles wide). Weighs that with what petioles tell, each as far as the two may be apart by chance. Labels that were given, and
+ * scans without noise, show the base itself. */
+static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], double height, const plm_extreme *base,
+                                const underside *side, size_t count, underside *told, bool *standing, plm_error *error)
 {
-    const double told_error = hypot(told->std_error, noise_unknown * told->noise), above = -base->value - told->height;
-    if (!(told_error < base->std_error) || !(above > 0)) return false;
-    const double told_squared = told_error * told_error;
-    const double seen_squared = fmax(base->std_error * base->std_error, above * above - told_squared);
+    const double noise = base->sampling.noise;
+    double radius = INFINITY, soil, soil_error;
+    *standing = false;
+    if (scene->labels_given || !(noise > PLM_NOISE_FREE * base->sampling.spacing)) return PLM_OK;
+    for (size_t i = 0; i < count; i++) radius = fmin(radius, side[i].radius);
+    bool seen;
+    const plm_status status =
+        plm_soil_height(scene, foot, radius, height, height, told->noise, &soil, &soil_error, &seen, error);
+    if (status != PLM_OK || !seen) return status;
+    const double above = 0.5 * stands * radius, apart = told->height - (soil + above);
+    const double soils = soil_error * soil_error + above * above / 3, petioles = told->std_error * told->std_error;
+    if (-base->value - soil > 2 * above + near_noise * noise ||
+        apart * apart > most_apart * most_apart * (soils + petioles))
+        return PLM_OK;
+    const double between = 0.5 * fmax(apart * apart - soils - petioles, 0); /* variance, by moments as above */
+    const double one = 1 / (soils + between), other = 1 / (petioles + between);
+    told->height = (one * (soil + above) + other * told->height) / (one + other);
+    told->std_error = sqrt(1 / (one + other));
+    *standing = true;
+    return PLM_OK;
+}
+
+/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing, and just above soil, where
+ * labels end in the noise of both, nothing at all. Where it lies lower than is told (leaves may hang), or is known better, it stays:
+ * false. */
+static bool join(const underside *told, bool standing, plm_extreme *base)
+{
+    const double above = -base->value - told->height;
+    if (!(above > 0) || !(standing || told->std_error < base->std_error)) return false;
+    const double told_squared = told->std_error * told->std_error;
+    const double seen_squared =
+        standing ? INFINITY : fmax(base->std_error * base->std_error, above * above - told_squared);
     const double sum = 1 / seen_squared + 1 / told_squared;
     base->value = (base->value / seen_squared - told->height / told_squared) / sum;
     base->std_error = sqrt(1 / sum);
@@ -144,13 +182,14 @@ static bool has_stem(const plm_scene *scene)
     return false;
 }
 
-plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, bool *lowered, plm_error *error)
+plm_status plm_rosette_base(const plm_scene *scene, double height, plm_extreme *base, bool *lowered, bool *on_soil,
+                            plm_error *error)
 {
-    *lowered = false;
+    *lowered = *on_soil = false;
     if (scene->options->deadline || has_stem(scene)) return PLM_OK;
     double foot[2], foot_error;
     bool found;
-    const plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
+    plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
     if (status != PLM_OK || !found) return status;
     underside *side = plm_alloc(scene->organ_count, sizeof *side, error);
     if (!side) return PLM_E_MEMORY;
@@ -163,8 +202,11 @@ plm_status plm_rosette_base(const plm_scene *scene, plm_extreme *base, bool *low
     if (count >= FEWEST_PETIOLES) {
         const double shared = draw_together(side, count);
         underside told = least_of(side, count);
-        told.std_error = hypot(told.std_error, shared);
-        *lowered = join(&told, base);
+        told.std_error = hypot(hypot(told.std_error, shared), noise_unknown * told.noise);
+        bool standing = false;
+        status = stand_on_soil(scene, foot, height, base, side, count, &told, &standing, error);
+        if (status == PLM_OK) *lowered = join(&told, standing, base);
+        *on_soil = standing && *lowered;
     }
     plm_free(side);
     return status;

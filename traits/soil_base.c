@@ -88,21 +88,62 @@ static double height_of_soil(const soil_point *point, size_t count, const foot_p
     return soil;
 }
 
+/* How far from the ground's plane its points lie, and a foot at the most. */
+static double tolerance_of(double height, double noise)
+{
+    return near_share * height + near_noise * noise;
+}
+
+static bool has_soil(const plm_scene *scene)
+{
+    return scene->ground_label && scene->ground->found && scene->options->ground != PLM_GROUND_HEIGHT;
+}
+
+static double plane_of(const plm_scene *scene)
+{
+    return scene->ground->soil_height - scene->cloud->origin[2];
+}
+
+/* NAN where hardly a point of the ground is near. soil and value: room for all of the cloud's points. */
+static double soil_at(const plm_scene *scene, const foot_print *foot, double tolerance, double reach, soil_point *soil,
+                      double *value, double *std_error)
+{
+    const double plane = plane_of(scene);
+    const size_t count = soil_about(scene, foot, plane - tolerance, plane + tolerance, reach, soil);
+    return count < FEWEST_SOIL ? NAN : height_of_soil(soil, count, foot, value, std_error);
+}
+
+plm_status plm_soil_height(const plm_scene *scene, const double place[2], double width, double reach, double height,
+                           double noise, double *soil, double *std_error, bool *told, plm_error *error)
+{
+    *told = false;
+    if (!has_soil(scene)) return PLM_OK;
+    soil_point *point = plm_alloc(scene->cloud->count, sizeof *point, error);
+    double *value = plm_alloc(scene->cloud->count, sizeof *value, error);
+    const plm_status status = point && value ? PLM_OK : PLM_E_MEMORY;
+    const foot_print foot = {{place[0], place[1]}, width};
+    if (status == PLM_OK) {
+        *soil = soil_at(scene, &foot, tolerance_of(height, noise), reach, point, value, std_error);
+        *told = !isnan(*soil);
+    }
+    plm_free(point);
+    plm_free(value);
+    return status;
+}
+
 plm_status plm_soil_base(const plm_scene *scene, double height, plm_extreme *base, bool *changed, plm_error *error)
 {
     *changed = false;
-    if (!scene->ground_label || !scene->ground->found || scene->options->ground == PLM_GROUND_HEIGHT) return PLM_OK;
-    const double plane = scene->ground->soil_height - scene->cloud->origin[2];
-    const double tolerance = near_share * height + near_noise * base->sampling.noise;
+    if (!has_soil(scene)) return PLM_OK;
+    const double plane = plane_of(scene), tolerance = tolerance_of(height, base->sampling.noise);
     soil_point *soil = plm_alloc(scene->cloud->count, sizeof *soil, error);
     double *value = plm_alloc(scene->cloud->count, sizeof *value, error);
     const plm_status status = soil && value ? PLM_OK : PLM_E_MEMORY;
     foot_print foot = {.width = 0};
     if (status == PLM_OK && find_foot(scene, plane - tolerance, plane + tolerance + foot_share * height,
                                       widest_foot * height, value, &foot)) {
-        const size_t count = soil_about(scene, &foot, plane - tolerance, plane + tolerance, reach_share * height, soil);
         double std_error = NAN;
-        const double told = count < FEWEST_SOIL ? NAN : height_of_soil(soil, count, &foot, value, &std_error);
+        const double told = soil_at(scene, &foot, tolerance, reach_share * height, soil, value, &std_error);
         *changed = fabs(-base->value - told) < tolerance;
         if (*changed) base->value = -told, base->std_error = std_error;
     }

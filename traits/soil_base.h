@@ -10,4 +10,11 @@
  * near it. Of the points alone: the same whatever else is asked for. changed: whether it did. PLM_E_MEMORY. */
 plm_status plm_soil_base(const plm_scene *scene, double height, plm_extreme *base, bool *changed, plm_error *error);
 
+/** Height of the ground (metres, offset as the plant's points) about a place seen from above and its standard error: of the nearest points
+ * of the ground, but not of those within twice width of the place, where something stands. height: of the plant; what is off the
+ * ground's plane by more than a share of it and by four times the noise is no ground here. told: false where no ground was found,
+ * or hardly a point of it lies within reach; the two others mean nothing then. PLM_E_MEMORY. */
+plm_status plm_soil_height(const plm_scene *scene, const double place[2], double width, double reach, double height,
+                           double noise, double *soil, double *std_error, bool *told, plm_error *error);
+
 #endif

@@ -64,12 +64,26 @@ static void leaves_part_where_one_blade_begins_before_the_other(void **unused)
     virtual_plant_free(&made);
 }
 
+/* Balls in which noise lets tubes be told are wider than the blades of young leaves. */
+static void narrow_blades_begin_where_wide_ones_do(void **unused)
+{
+    (void)unused;
+    for (uint64_t seed = 60007; seed <= 60008; seed++) {
+        virtual_plant made = check(
+            &(plm_scan_options){
+                .scanner = PLM_SCANNER_SPLAT, .points = 45000, .noise = 4e-4, .outliers = 0.01, .seed = seed},
+            0.75, 0.76);
+        virtual_plant_free(&made);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_way_along_a_steep_leaf_is_no_stem),
         cmocka_unit_test(short_petioles_of_few_points_are_tubes),
         cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
+        cmocka_unit_test(narrow_blades_begin_where_wide_ones_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
