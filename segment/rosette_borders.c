@@ -1,8 +1,8 @@
 /* segment/rosette_borders.c: the balls by which tubes are told from blades are as wide as noise and spacing ask for, and blades
  * narrower than these look like tubes: in noise petioles of a rosette's young leaves took half of their blades, or all of
  * them. But the leaves of a rosette are alike in shape: the border lies at about the same share of the way from the crown to the tip
- * (virtual rosettes of two families: within some 8 %). So the leaves with wide blades tell the share, and narrow ones have it, as
- * have those that lie far off it: what is wrong with their border are points of others. */
+ * (virtual rosettes of two families: within some 8 %). So the leaves with wide blades tell the share, and the narrower a blade, the
+ * nearer its border comes to that; so do those that lie far off it: what is wrong with their border are points of others. */
 #include "segment/rosette_borders.h"
 
 #include "cloud/linear.h"
@@ -15,6 +15,8 @@
 
 /* Half width of a blade in R, at least, where widths tell its border (0.8 to 1.2 are alike on 24 virtual rosettes). */
 static const double WIDE = 0.9;
+/* Between these the border is between its own and the usual place: what widths tell comes down to nothing as a blade narrows. */
+static const double UNSURE = 0.7, SURE = 1.3;
 static const double NOISY = 0.04; /* noise in R: below, balls are as small as blades ask for */
 static const double CROWN =
     0.04; /* radius of the crown, of the longest way to a tip: petioles begin there (0.03 to 0.05 are alike) */
@@ -126,9 +128,14 @@ static double usual_share(const work *w, double *share)
 
 static void set_border(const work *w, const rosette_leaf *leaf, double share)
 {
-    const double border = w->crown + share * (leaf->tip - w->crown);
+    double border = w->crown + share * (leaf->tip - w->crown);
     if (leaf->count < FEWEST_POINTS || !(leaf->tip > OUT_OF_CROWN * w->crown)) return;
-    if (is_told(w, leaf) && fabs(leaf->border - border) < FAR_OFF * border) return;
+    if (is_told(w, leaf) && fabs(leaf->border - border) < FAR_OFF * border) {
+        const double wide = leaf->half_width / w->sketch->scale.radius;
+        const double own = fmin((wide - UNSURE) / (SURE - UNSURE), 1);
+        if (own >= 1) return;
+        border += fmax(own, 0) * (leaf->border - border);
+    }
     for (size_t i = 0; i < leaf->count; i++)
         w->out->label[w->row[leaf->place[i].point]] = leaf->place[i].off > border ? PLM_LABEL_LEAF : PLM_LABEL_PETIOLE;
 }
