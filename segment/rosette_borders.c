@@ -18,10 +18,10 @@ static const double WIDE = 0.9;
 /* Between these the border is between its own and the usual place: what widths tell comes down to nothing as a blade narrows. */
 static const double UNSURE = 0.7, SURE = 1.3;
 static const double NOISY = 0.04; /* noise in R: below, balls are as small as blades ask for */
-static const double CROWN =
-    0.04; /* radius of the crown, of the longest way to a tip: petioles begin there (0.03 to 0.05 are alike) */
-static const double OUT_OF_CROWN = 2; /* of its radius: what ends nearer to the core is no leaf that was seen whole */
-static const double FAR_OFF = 0.25;   /* of the usual place of the border (0.2 to 0.3 are alike) */
+/* Radius of the crown, of the longest way to a tip: petioles begin there (0.03 to 0.05 are alike). What ends nearer to the core than
+ * OUT_OF_CROWN of it is no leaf that was seen whole. */
+static const double CROWN = 0.04, OUT_OF_CROWN = 2;
+static const double FAR_OFF = 0.25;      /* of the usual place of the border (0.2 to 0.3 are alike) */
 static const double LEAST_PETIOLE = 0.1; /* of the way to the tip: a border nearer to the core was not found */
 static const double TIP = 0.98;          /* quantile of the distances from the core that is the tip's */
 enum { FEWEST_POINTS = 12, FEWEST_BLADE = 6, FEWEST_TOLD = 3 };
@@ -132,9 +132,9 @@ static void set_border(const work *w, const rosette_leaf *leaf, double share)
     if (leaf->count < FEWEST_POINTS || !(leaf->tip > OUT_OF_CROWN * w->crown)) return;
     if (is_told(w, leaf) && fabs(leaf->border - border) < FAR_OFF * border) {
         const double wide = leaf->half_width / w->sketch->scale.radius;
-        const double own = fmin((wide - UNSURE) / (SURE - UNSURE), 1);
+        const double own = (wide - UNSURE) / (SURE - UNSURE); /* above 0, as UNSURE is below WIDE */
         if (own >= 1) return;
-        border += fmax(own, 0) * (leaf->border - border);
+        border += own * (leaf->border - border);
     }
     for (size_t i = 0; i < leaf->count; i++)
         w->out->label[w->row[leaf->place[i].point]] = leaf->place[i].off > border ? PLM_LABEL_LEAF : PLM_LABEL_PETIOLE;
