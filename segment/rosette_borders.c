@@ -1,7 +1,7 @@
 /* segment/rosette_borders.c: the balls by which tubes are told from blades are as wide as noise and spacing ask for, and blades
  * narrower than these look like tubes: in noise petioles of a rosette's young leaves took half of their blades, or all of
  * them. But the leaves of a rosette are alike in shape: the border lies at about the same share of the way from the crown to the tip
- * (virtual rosettes of two families: within some 8 %). So the leaves with wide blades tell the share, and the narrower a blade, the
+ * (within 10 to 15 % of it in virtual rosettes). So the leaves with wide blades tell the share, and the narrower a blade, the
  * nearer its border comes to that; so do those that lie far off it: what is wrong with their border are points of others. */
 #include "segment/rosette_borders.h"
 
