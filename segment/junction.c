@@ -23,6 +23,12 @@ static const double LONG_RUN = 2.5;   /* windows: a narrow stretch of this lengt
 static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 /* The same where nothing but a tube lies about the line, at a few stations and at many. */
 static const double LEAST_CLEAR = 0.15, LEAST_SURE = 0.1;
+static const double LEAST_LONG = 0.05; /* the same beyond a long clear stretch */
+/* Points of a stretch where balls find no tube: of a thinly scanned sheet so many would not all lie near the line by chance. With
+ * noise of less than so much of the tube's width, points lie evenly, and a gap is one. */
+static const double ENOUGH = 25, NOISY = 0.25;
+/* Steps of a compound leaf, in links: about what a point takes of a sheet. In shorter ones stations fall apart at gaps. */
+static const double STEP_LINKS = 0.65;
 static const double WIDEST = 1.15; /* tubes of the narrowest of the larger leaves: a compound leaf's tube is no wider */
 static const double FILLED = 0.4;  /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
 static const double BLADE = 2;     /* widths of the tube that the last leaflet reaches at least */
@@ -33,6 +39,7 @@ static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond
 enum {
     CLEAR = 2,        /* stations at which nothing but a tube lies about the line: a rachis, ... */
     SURE = 5,         /* ... and so many: surely */
+    LONG_CLEAR = 10,  /* ... and so many, with a small leaflet beyond */
     LARGER_LEAST = 2, /* leaves that tell how wide a smaller one's tube is at most */
     BEFORE = 6,
     AFTER = 9,
@@ -135,6 +142,19 @@ void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t c
     }
     plm_eigen3(moment, value, vector);
     station->width = sqrt(fmax(value[0], 0));
+}
+
+double plm_leaf_typical_link(const plm_leaf_way *way, const bool *among, float *value)
+{
+    const plm_graph *graph = &way->sketch->graph;
+    size_t count = 0;
+    for (size_t k = 0; k < way->count; k++) { /* of each point one, in turn */
+        const uint32_t i = way->order[k], links = graph->first[i + 1] - graph->first[i];
+        if (!among[i] || !links) continue;
+        const uint32_t j = graph->edge[graph->first[i] + (uint32_t)k % links];
+        if (among[j]) value[count++] = (float)plm_graph_length(graph, i, j);
+    }
+    return count ? plm_quantile(value, count, 0.5) : 0;
 }
 
 /* The station of the marked points of order[begin, end). */
@@ -249,7 +269,8 @@ static double share_beyond(const plm_leaf_way *way, size_t station)
 }
 
 /* Whether the narrow stations [begin, split) are rachis: a stretch as long as a window that is long or as full as a tube.
- * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf, or few points. */
+ * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf, or few points; and gaps of a
+ * thinly scanned blade look as clear, but there are few points on the line. */
 static bool is_rachis(const work *w, size_t begin, size_t split)
 {
     const plm_leaf_way *way = &w->way;
@@ -258,10 +279,32 @@ static bool is_rachis(const work *w, size_t begin, size_t split)
     size_t clear = 0;
     for (size_t k = begin; k < split; k++) tubes += way->station[k].tube, clear += w->clear[k];
     const bool filled = run_points(way, begin, split) >= FILLED * way->tube_points * run;
+    const bool noisy = w->sketch->scale.noise > NOISY * way->tube;
+    if (noisy && tubes <= TUBE_SHARE * run && run_points(way, begin, split) < ENOUGH * WINDOW) return false;
     if (clear >= CLEAR && filled) return share_beyond(way, split) > (clear >= SURE ? LEAST_SURE : LEAST_CLEAR);
     if (run < WINDOW || !plm_leaf_is_full(way, begin, split)) return false;
     if (tubes > TUBE_SHARE * run) return true;
     return filled && share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
+}
+
+/* In noise a small last leaflet is hardly wider than tubes are elsewhere, but what is clear before it tells how wide the rachis
+ * is there. The station after the outermost long clear stretch beyond which there is something wider; first: none. */
+static size_t clear_split(const work *w, size_t first)
+{
+    const plm_leaf_way *way = &w->way;
+    double widest = 0;
+    for (size_t k = way->station_count; k > first;) {
+        const size_t split = k;
+        size_t count = 0;
+        for (; k > first && w->clear[k - 1]; k--)
+            if (way->station[k - 1].count > 1) w->value[count++] = (float)way->station[k - 1].width;
+        const double least = fmax(ENOUGH * WINDOW, FILLED * way->tube_points * (double)(split - k));
+        if (split - k >= LONG_CLEAR && count && run_points(way, k, split) >= least &&
+            widest > WIDE * plm_quantile(w->value, count, 0.5) && share_beyond(way, split) > LEAST_LONG)
+            return split;
+        if (k > first) widest = fmax(widest, way->station[--k].width);
+    }
+    return first;
 }
 
 /* The first station of the last leaflet of a compound leaf: from the tip inwards, once the leaflet was met, the first narrow
@@ -282,6 +325,12 @@ static size_t last_split(const work *w, size_t first)
         if (is_rachis(w, k, split)) return split;
     }
     return first;
+}
+
+static size_t compound_split(const work *w, size_t first)
+{
+    const size_t split = last_split(w, first), beyond = clear_split(w, first);
+    return beyond > split ? beyond : split;
 }
 
 /* Least squares of excess = c covered + a beyond over stations; c and a are not negative. Gives the sum of squares. */
@@ -335,6 +384,8 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
     if (status != PLM_OK || !way->count) return status;
     const double farthest = way->distance[way->order[way->count - 1]];
     way->step = fmax(s->working.cell, farthest / (STATIONS_MOST - 2));
+    if (s->habit == PLM_HABIT_COMPOUND)
+        way->step = fmax(way->step, STEP_LINKS * plm_leaf_typical_link(way, w->allowed, w->value));
     way->window = WINDOW * way->step;
     way->station_count = (size_t)(farthest / way->step) + 1;
     w->first = (size_t)(FOOT * s->scale.radius / way->step) + 1;
@@ -388,7 +439,7 @@ static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
     if (status == PLM_OK && way->count && compound)
         status = plm_rachis_clear(way, w->trail, w->trail_count, w->clear, w->beside, error);
     if (status != PLM_OK || !way->count) return status;
-    const size_t split = compound ? last_split(w, w->first) : plm_leaf_only_split(way, w->first);
+    const size_t split = compound ? compound_split(w, w->first) : plm_leaf_only_split(way, w->first);
     if (split <= w->first || split >= way->station_count) return PLM_OK;
     way->junction = plm_leaf_change(way, w->first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)

@@ -49,6 +49,10 @@ void plm_leaf_clean_foot(plm_sketch *sketch, const plm_leaf_way *way);
 /** Tells rachis, petiolules and leaflets of a compound leaf apart, up to way->junction. sketch: way's. */
 plm_status plm_leaf_leaflets(plm_sketch *sketch, const plm_leaf_way *way, plm_error *error);
 
+/** Median length of the graph's links between the leaf's points that count; 0 where there are none.
+ * among: of each working point, whether it counts. value: scratch, way->count long. */
+double plm_leaf_typical_link(const plm_leaf_way *way, const bool *among, float *value);
+
 /** Width from which on a station is wider than the tube: 1.6 widths of it. */
 double plm_leaf_wide(const plm_leaf_way *way);
 

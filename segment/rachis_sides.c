@@ -29,6 +29,7 @@ typedef struct work {
     const plm_leaf_way *way;
     uint32_t *place; /* of each working point in the way's order; UINT32_MAX: not in it, on the line, or met */
     uint32_t *member;
+    bool *loose;   /* of each working point, whether it has a place at first */
     float *length; /* scratch: a link of each point */
     double longest;
 } work;
@@ -51,20 +52,6 @@ static size_t collect(work *w, uint32_t from)
         }
     }
     return count;
-}
-
-/* Median length of links among the points off the line; of each point one, in turn. */
-static double typical_link(const work *w)
-{
-    const plm_graph *graph = &w->way->sketch->graph;
-    size_t count = 0;
-    for (size_t k = 0; k < w->way->count; k++) {
-        const uint32_t i = w->way->order[k], links = graph->first[i + 1] - graph->first[i];
-        if (w->place[i] == UINT32_MAX || !links) continue;
-        const uint32_t j = graph->edge[graph->first[i] + (uint32_t)k % links];
-        if (w->place[j] != UINT32_MAX) w->length[count++] = (float)plm_graph_length(graph, i, j);
-    }
-    return count ? plm_quantile(w->length, count, 0.5) : 0;
 }
 
 static piece measure(const work *w, size_t count, const float *off, const uint32_t *station, double reach)
@@ -92,10 +79,13 @@ static size_t take_points(work *w, const float *off, double reach, bool closely,
 {
     const plm_leaf_way *way = w->way;
     size_t points = 0;
-    for (size_t i = 0; i < way->sketch->working.count; i++) w->place[i] = UINT32_MAX;
-    for (size_t k = 0; k < way->count; k++)
-        if (!(off[k] < reach) && !aside[k]) w->place[way->order[k]] = (uint32_t)k, points++;
-    w->longest = (closely ? JOINED_CLOSELY : JOINED) * typical_link(w);
+    for (size_t i = 0; i < way->sketch->working.count; i++) w->place[i] = UINT32_MAX, w->loose[i] = false;
+    for (size_t k = 0; k < way->count; k++) {
+        const uint32_t i = way->order[k];
+        w->loose[i] = !(off[k] < reach) && !aside[k];
+        if (w->loose[i]) w->place[i] = (uint32_t)k, points++;
+    }
+    w->longest = (closely ? JOINED_CLOSELY : JOINED) * plm_leaf_typical_link(way, w->loose, w->length);
     return points;
 }
 
@@ -124,6 +114,7 @@ plm_status plm_rachis_sides(const plm_leaf_way *way, const float *off, const uin
     work w = {.way = way,
               .place = plm_scratch_take(&scratch, way->sketch->working.count, sizeof *w.place),
               .member = plm_scratch_take(&scratch, way->count, sizeof *w.member),
+              .loose = plm_scratch_take(&scratch, way->sketch->working.count, sizeof *w.loose),
               .length = plm_scratch_take(&scratch, way->count, sizeof *w.length)};
     bool *parted = plm_scratch_take(&scratch, way->count, sizeof *parted);
     plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;

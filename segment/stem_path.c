@@ -9,7 +9,9 @@
 static const double THICK = 0.5; /* of the stem's radius: a tube that may be stem */
 static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
 static const double THIN_END = 0.55; /* of the lower stem's radius: the stem has become a petiole */
-static const double THIN_WAY = 0.6;  /* of the radius on the way so far (over MEMORY, in R): thinner is no stem, ... */
+/* A stem that tapers goes on where it is so thick against what its lower part's taper gives there, while it turns (radians) less. */
+static const double TAPERED = 0.7, STRAIGHT = 0.21;
+static const double THIN_WAY = 0.6; /* of the radius on the way so far (over MEMORY, in R): thinner is no stem, ... */
 static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at most to this share of the lower stem's */
 static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
 static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
@@ -22,7 +24,7 @@ static const double WINDOW = 1;                       /* half window of centring
 static const double REACH = 2;                        /* points within so many stem radii centre the path */
 static const double MARGIN = 1.1;                     /* points within so many radii (plus sigma) are stem */
 static const double MARGIN_BLADE = 1.15;              /* the same for points that look like blade */
-enum { CENTRING_ROUNDS = 3 };
+enum { CENTRING_ROUNDS = 3, STRAIGHT_NODES = 6 /* before the end */ };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */
 
@@ -354,24 +356,53 @@ static plm_status measure_radius(const plm_sketch *sketch, plm_stem_path *stem, 
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
+/* Radius at a node without the noise, whose squared SD is noise2. */
+static double bare_radius(const plm_stem_path *stem, size_t n, double noise2)
+{
+    return sqrt(fmax(stem->radius[n] * stem->radius[n] - noise2, 0));
+}
+
+/* The end of a path that was cut at node end, farther on where the stem tapers: as far as it is straight and no thinner than the
+ * taper of its nodes [0, lower) says. A petiole is thinner at once, or leaves at an angle. */
+static size_t follow_taper(const plm_stem_path *stem, size_t lower, size_t end, double noise2)
+{
+    double along = 0, radius = 0, squares = 0, product = 0;
+    for (size_t n = 0; n < lower; n++) {
+        along += stem->along[n] / (double)lower;
+        radius += bare_radius(stem, n, noise2) / (double)lower;
+    }
+    for (size_t n = 0; n < lower; n++) {
+        const double d = stem->along[n] - along;
+        squares += d * d;
+        product += d * (bare_radius(stem, n, noise2) - radius);
+    }
+    if (!(squares > 0) || product >= 0) return end;
+    for (size_t n = end > STRAIGHT_NODES ? end - STRAIGHT_NODES : 0; n < stem->count; n++) {
+        const double usual = radius + product / squares * (stem->along[n] - along);
+        const bool thin = n >= end && bare_radius(stem, n, noise2) < TAPERED * usual;
+        if (thin || plm_stem_turn(stem, n) >= STRAIGHT) return n > end ? n : end;
+    }
+    return stem->count;
+}
+
 /* Cuts the path where the radius has fallen below THIN_END of the lower stem's for good: at the end of the piece over
  * which the excess over that adds up to the most. The noise adds to the squares of both. */
 static plm_status cut_thin_end(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error)
 {
     float *value = plm_alloc(stem->count, sizeof *value, error);
     if (!value) return PLM_E_MEMORY;
-    const double noise = sketch->scale.noise * sketch->scale.noise;
+    const double noise2 = sketch->scale.noise * sketch->scale.noise;
     const size_t lower = (size_t)(LOWER_SHARE * (double)stem->count);
     for (size_t n = 0; n < lower; n++) value[n] = (float)stem->radius[n];
     const double typical = plm_quantile(value, lower, 0.5);
-    const double least = THIN_END * sqrt(fmax(typical * typical - noise, 0.25 * typical * typical));
+    const double least = THIN_END * sqrt(fmax(typical * typical - noise2, 0.25 * typical * typical));
     size_t end = lower;
     double sum = 0, most = 0;
     for (size_t n = lower; n < stem->count; n++) {
-        sum += sqrt(fmax(stem->radius[n] * stem->radius[n] - noise, 0)) - least;
+        sum += bare_radius(stem, n, noise2) - least;
         if (sum > most) most = sum, end = n + 1;
     }
-    stem->count = end;
+    stem->count = follow_taper(stem, lower, end, noise2);
     plm_free(value);
     return PLM_OK;
 }

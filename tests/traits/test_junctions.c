@@ -104,6 +104,35 @@ static void torn_tips_are_no_rachis(void **state)
     }
 }
 
+/* Splats so few that the stations of a way fall apart at gaps: a rachis was found amid a blade, and the petiole was 20 degrees
+ * off. */
+static void stations_are_as_long_as_gaps_between_points(void **state)
+{
+    (void)state;
+    const errors e = errors_of("soybean", &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT,
+                                                              .seed = 55002,
+                                                              .points = 17000,
+                                                              .noise = 0.0005,
+                                                              .outliers = 0.01,
+                                                              .views = 60});
+    print_errors("soybean", &e);
+    assert_true(e.degrees < 5);
+}
+
+/* A stem tapers to little more than half of what it is below: its last internode was taken for a petiole, 18 mm of it. */
+static void a_stem_that_tapers_goes_on_to_its_tip(void **state)
+{
+    (void)state;
+    const errors e = errors_of("tomato", &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT,
+                                                             .seed = 29003,
+                                                             .points = 45000,
+                                                             .noise = 0.0005,
+                                                             .outliers = 0.01,
+                                                             .views = 60});
+    print_errors("tomato", &e);
+    assert_true(e.stem < 5);
+}
+
 /* Petioles as long as the rest of the stem, and hardly slimmer: the way up went into one, and the stem was 26 mm too short. */
 static void a_long_petiole_is_not_the_stem(void **state)
 {
@@ -184,6 +213,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_stem_ends_at_its_tip_and_not_in_a_petiole),
         cmocka_unit_test(torn_tips_are_no_rachis),
+        cmocka_unit_test(stations_are_as_long_as_gaps_between_points),
+        cmocka_unit_test(a_stem_that_tapers_goes_on_to_its_tip),
         cmocka_unit_test(a_long_petiole_is_not_the_stem),
         cmocka_unit_test(a_clean_petiole_begins_at_the_stems_surface),
         cmocka_unit_test(a_sinus_ends_near_to_where_the_blade_widens),
