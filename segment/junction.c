@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double WINDOW = 3;                         /* in steps of a working cell */
+static const double WINDOW = 3;                         /* in steps */
 static const double JOINED = 1, JOINED_COMPOUND = 0.25; /* in windows, to both sides: see measure_stations */
 static const double WIDE = 1.6;       /* widths of the tube: a station beyond is blade, one below is tube */
 static const double TUBE_SHARE = 0.5; /* of a station's points: it is of tube */
@@ -24,7 +24,7 @@ static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 /* The same where nothing but a tube lies about the line, at a few stations and at many. */
 static const double LEAST_CLEAR = 0.15, LEAST_SURE = 0.1;
 static const double LEAST_LONG = 0.05; /* the same beyond a long clear stretch */
-/* Points of a stretch where balls find no tube: of a thinly scanned sheet so many would not all lie near the line by chance. With
+/* Points of a stretch where balls find no tube, or of a long clear one: of a thinly scanned sheet so many would not all lie near the line by chance. With
  * noise of less than so much of the tube's width, points lie evenly, and a gap is one. */
 static const double ENOUGH = 25, NOISY = 0.25;
 /* Steps of a compound leaf, in links: about what a point takes of a sheet. In shorter ones stations fall apart at gaps. */
@@ -269,8 +269,8 @@ static double share_beyond(const plm_leaf_way *way, size_t station)
 }
 
 /* Whether the narrow stations [begin, split) are rachis: a stretch as long as a window that is long or as full as a tube.
- * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf, or few points; and gaps of a
- * thinly scanned blade look as clear, but there are few points on the line. */
+ * Where balls found no tube there, a torn tip hangs on as much, but it holds little of the leaf, or few points; and in noise gaps
+ * of a thinly scanned blade look as clear, but there are few points on the line. */
 static bool is_rachis(const work *w, size_t begin, size_t split)
 {
     const plm_leaf_way *way = &w->way;
@@ -287,22 +287,25 @@ static bool is_rachis(const work *w, size_t begin, size_t split)
     return filled && share_beyond(way, split) > (run < SHORT_RUN * WINDOW ? LEAST_LAST_SHORT : LEAST_LAST);
 }
 
-/* In noise a small last leaflet is hardly wider than tubes are elsewhere, but what is clear before it tells how wide the rachis
- * is there. The station after the outermost long clear stretch beyond which there is something wider; first: none. */
+/* Noise makes tubes wide, so that a small last leaflet is hardly wider than they are elsewhere; but a long clear stretch before it
+ * tells how wide the rachis is there. The first station beyond the outermost such stretch that is wider, where enough of the leaf
+ * lies beyond; first: there is none. */
 static size_t clear_split(const work *w, size_t first)
 {
     const plm_leaf_way *way = &w->way;
-    double widest = 0;
-    for (size_t k = way->station_count; k > first;) {
-        const size_t split = k;
+    for (size_t k = way->station_count; k > first; k--) {
+        const size_t end = k;
         size_t count = 0;
         for (; k > first && w->clear[k - 1]; k--)
             if (way->station[k - 1].count > 1) w->value[count++] = (float)way->station[k - 1].width;
-        const double least = fmax(ENOUGH * WINDOW, FILLED * way->tube_points * (double)(split - k));
-        if (split - k >= LONG_CLEAR && count && run_points(way, k, split) >= least &&
-            widest > WIDE * plm_quantile(w->value, count, 0.5) && share_beyond(way, split) > LEAST_LONG)
-            return split;
-        if (k > first) widest = fmax(widest, way->station[--k].width);
+        const double least = fmax(ENOUGH * WINDOW, FILLED * way->tube_points * (double)(end - k));
+        if (end - k >= LONG_CLEAR && count && run_points(way, k, end) >= least) {
+            const double wide = WIDE * plm_quantile(w->value, count, 0.5);
+            size_t split = end;
+            while (split < way->station_count && (w->clear[split] || way->station[split].width <= wide)) split++;
+            if (split < way->station_count && share_beyond(way, split) > LEAST_LONG) return split;
+        }
+        if (k == first) break;
     }
     return first;
 }

@@ -10,7 +10,7 @@ static const double THICK = 0.5; /* of the stem's radius: a tube that may be ste
 static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
 static const double THIN_END = 0.55; /* of the lower stem's radius: the stem has become a petiole */
 /* A stem that tapers goes on where it is so thick against what its lower part's taper gives there, while it turns (radians) less. */
-static const double TAPERED = 0.7, STRAIGHT = 0.21;
+static const double TAPERED = 0.7, STRAIGHT = 0.21; /* the latter as KINK in stem_kink.c */
 static const double THIN_WAY = 0.6; /* of the radius on the way so far (over MEMORY, in R): thinner is no stem, ... */
 static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at most to this share of the lower stem's */
 static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
@@ -24,7 +24,7 @@ static const double WINDOW = 1;                       /* half window of centring
 static const double REACH = 2;                        /* points within so many stem radii centre the path */
 static const double MARGIN = 1.1;                     /* points within so many radii (plus sigma) are stem */
 static const double MARGIN_BLADE = 1.15;              /* the same for points that look like blade */
-enum { CENTRING_ROUNDS = 3, STRAIGHT_NODES = 6 /* before the end */ };
+enum { CENTRING_ROUNDS = 3, STRAIGHT_NODES = 6 /* before the end: arms of a turn */, ARM_LEAST = 3 };
 
 /* ---- The path over points ------------------------------------------------------------------------------------- */
 
@@ -362,8 +362,8 @@ static double bare_radius(const plm_stem_path *stem, size_t n, double noise2)
     return sqrt(fmax(stem->radius[n] * stem->radius[n] - noise2, 0));
 }
 
-/* The end of a path that was cut at node end, farther on where the stem tapers: as far as it is straight and no thinner than the
- * taper of its nodes [0, lower) says. A petiole is thinner at once, or leaves at an angle. */
+/* The end of a path that was cut at node end, farther on where the stem tapers: as far as it is straight and not much thinner than
+ * the taper of its nodes [0, lower) says, which falls to a share of their radius at most. */
 static size_t follow_taper(const plm_stem_path *stem, size_t lower, size_t end, double noise2)
 {
     double along = 0, radius = 0, squares = 0, product = 0;
@@ -378,15 +378,16 @@ static size_t follow_taper(const plm_stem_path *stem, size_t lower, size_t end, 
     }
     if (!(squares > 0) || product >= 0) return end;
     for (size_t n = end > STRAIGHT_NODES ? end - STRAIGHT_NODES : 0; n < stem->count; n++) {
-        const double usual = radius + product / squares * (stem->along[n] - along);
+        const double usual = fmax(radius + product / squares * (stem->along[n] - along), TAPER * radius);
         const bool thin = n >= end && bare_radius(stem, n, noise2) < TAPERED * usual;
-        if (thin || plm_stem_turn(stem, n) >= STRAIGHT) return n > end ? n : end;
+        const bool told = n >= ARM_LEAST && n + ARM_LEAST < stem->count; /* nearer to an end a turn is scatter */
+        if (thin || (told && plm_stem_turn(stem, n) >= STRAIGHT)) return n > end ? n : end;
     }
     return stem->count;
 }
 
 /* Cuts the path where the radius has fallen below THIN_END of the lower stem's for good: at the end of the piece over
- * which the excess over that adds up to the most. The noise adds to the squares of both. */
+ * which the excess over that adds up to the most. The noise adds to the squares of both. A stem that tapers goes on. */
 static plm_status cut_thin_end(const plm_sketch *sketch, plm_stem_path *stem, plm_error *error)
 {
     float *value = plm_alloc(stem->count, sizeof *value, error);
