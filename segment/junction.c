@@ -24,8 +24,8 @@ static const double LEAST_LAST = 0.2, LEAST_LAST_SHORT = 0.29, SHORT_RUN = 1.5;
 /* The same where nothing but a tube lies about the line, at a few stations and at many. */
 static const double LEAST_CLEAR = 0.15, LEAST_SURE = 0.1;
 static const double LEAST_LONG = 0.05; /* the same beyond a long clear stretch */
-/* Points of a stretch where balls find no tube, or of a long clear one: of a thinly scanned sheet so many would not all lie near the line by chance. With
- * noise of less than so much of the tube's width, points lie evenly, and a gap is one. */
+/* Points of a stretch where balls find no tube, or of a long clear one: of a thinly scanned sheet so many would not all lie near
+ * the line by chance. With noise of less than so much of the tube's width, points lie evenly, and a gap is one. */
 static const double ENOUGH = 25, NOISY = 0.25;
 /* Steps of a compound leaf, in links: about what a point takes of a sheet. In shorter ones stations fall apart at gaps. */
 static const double STEP_LINKS = 0.65;
@@ -330,6 +330,7 @@ static size_t last_split(const work *w, size_t first)
     return first;
 }
 
+/* The outer one: beyond a long clear stretch there may be a last leaflet that last_split takes for the rachis' tip. */
 static size_t compound_split(const work *w, size_t first)
 {
     const size_t split = last_split(w, first), beyond = clear_split(w, first);

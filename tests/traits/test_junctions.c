@@ -104,7 +104,7 @@ static void torn_tips_are_no_rachis(void **state)
     }
 }
 
-/* Splats so few that the stations of a way fall apart at gaps: a rachis was found amid a blade, and the petiole was 20 degrees
+/* Splats so few that the stations of a way fall apart at gaps: a rachis was found amid a blade, and a petiole was 12 degrees
  * off. */
 static void stations_are_as_long_as_gaps_between_points(void **state)
 {
