@@ -1,5 +1,6 @@
 /* segment/clean.c: floaters and ghost points, judged on a thinned copy: first point by point (segment/ghosts.c), then
- * clusters of floaters: small pieces, further from the next larger piece than they are long. */
+ * clusters of floaters: small pieces, further from the next larger piece than they are long. Where no depth camera leaves
+ * ghosts off rims, sparse tips of leaves are told from floaters at last (segment/sparse_tips.c). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "segment/ghosts.h"
 #include "segment/scale.h"
 #include "segment/segment.h"
+#include "segment/sparse_tips.h"
 #include "segment/thinning.h"
 
 enum { BUDGET = 80000, NEAREST = 8, SIXTH = 5, FEWEST = 10 * PLM_GHOST_NEIGHBOURS, AROUND = 256 };
@@ -101,7 +103,8 @@ static void drop_clusters(sieve *s, double spacing)
 
 /* ---- All together --------------------------------------------------------------------------------------------- */
 
-static plm_status sift(const float (*xyz)[3], size_t count, double spacing, bool *drop, plm_error *error)
+/* tip: out, what of the dropped is a sparse tip; NULL: not asked for. */
+static plm_status sift(const float (*xyz)[3], size_t count, double spacing, bool *drop, bool *tip, plm_error *error)
 {
     sieve s = {.count = count, .xyz = xyz, .drop = drop};
     plm_status status = plm_index_build(xyz, count, &s.index, error);
@@ -117,6 +120,7 @@ static plm_status sift(const float (*xyz)[3], size_t count, double spacing, bool
     if (status == PLM_OK && !room) status = PLM_E_MEMORY;
     if (status == PLM_OK) status = plm_index_table(s.index, NEAREST, s.row, s.squared, error);
     if (status == PLM_OK) drop_clusters(&s, spacing);
+    if (status == PLM_OK && tip) status = plm_sparse_tips(s.index, xyz, count, drop, tip, error);
     plm_index_free(s.index);
     plm_free(s.row);
     plm_free(s.squared);
@@ -147,11 +151,12 @@ static plm_status judge(const float (*xyz)[3], size_t count, bool *drop, double 
     return status;
 }
 
-static plm_status clean(const float (*xyz)[3], const uint32_t *row, size_t count, bool *keep, double *spacing,
-                        plm_error *error)
+/* tip may be NULL. */
+static plm_status clean(const float (*xyz)[3], const uint32_t *row, size_t count, bool *keep, bool *tip,
+                        double *spacing, plm_error *error)
 {
     plm_thinned thinned = {0};
-    bool *drop = NULL;
+    bool *drop = NULL, *sparse = NULL, fused = true;
     double cell = 0; /* as many points as there are */
     *spacing = 0;
     if (count < 2) return PLM_OK;
@@ -160,8 +165,16 @@ static plm_status clean(const float (*xyz)[3], const uint32_t *row, size_t count
     if (status == PLM_OK && !(drop = plm_alloc_zero(thinned.count, sizeof *drop, error))) status = PLM_E_MEMORY;
     const float(*few)[3] = (const float(*)[3])thinned.xyz;
     if (status == PLM_OK && thinned.count > 1) status = judge(few, thinned.count, drop, spacing, error);
-    if (status == PLM_OK && thinned.count >= FEWEST) status = sift(few, thinned.count, *spacing, drop, error);
-    for (size_t i = 0; i < count && status == PLM_OK; i++) keep[row[i]] = !drop[thinned.voxels.owner[i]];
+    if (status == PLM_OK && tip && thinned.count >= FEWEST)
+        status = plm_are_voxel_means(xyz, count, thinned.cell, &fused, error);
+    if (status == PLM_OK && !fused && !(sparse = plm_alloc_zero(thinned.count, sizeof *sparse, error)))
+        status = PLM_E_MEMORY;
+    if (status == PLM_OK && thinned.count >= FEWEST) status = sift(few, thinned.count, *spacing, drop, sparse, error);
+    for (size_t i = 0; i < count && status == PLM_OK; i++) {
+        keep[row[i]] = !drop[thinned.voxels.owner[i]];
+        if (sparse) tip[row[i]] = sparse[thinned.voxels.owner[i]];
+    }
+    plm_free(sparse);
     plm_free(drop);
     plm_thinned_free(&thinned);
     return status;
@@ -169,10 +182,17 @@ static plm_status clean(const float (*xyz)[3], const uint32_t *row, size_t count
 
 plm_status plm_clean(const plm_cloud *cloud, const uint8_t *label, bool *keep, double *spacing, plm_error *error)
 {
+    return plm_clean_but_tips(cloud, label, keep, NULL, spacing, error);
+}
+
+plm_status plm_clean_but_tips(const plm_cloud *cloud, const uint8_t *label, bool *keep, bool *tip, double *spacing,
+                              plm_error *error)
+{
     uint32_t *row = plm_alloc(cloud->count, sizeof *row, error);
     float(*xyz)[3] = plm_alloc(cloud->count, sizeof *xyz, error);
     bool *draft = plm_alloc(cloud->count, sizeof *draft, error);
     plm_status status = row && xyz && draft ? PLM_OK : PLM_E_MEMORY;
+    if (tip) memset(tip, 0, cloud->count * sizeof *tip);
     if (status == PLM_OK) {
         size_t count = 0;
         double found = 0;
@@ -182,7 +202,7 @@ plm_status plm_clean(const plm_cloud *cloud, const uint8_t *label, bool *keep, d
             memcpy(xyz[count], cloud->xyz[i], sizeof *xyz);
             row[count++] = (uint32_t)i;
         }
-        status = clean((const float(*)[3])xyz, row, count, draft, &found, error);
+        status = clean((const float(*)[3])xyz, row, count, draft, tip, &found, error);
         if (status == PLM_OK) {
             memcpy(keep, draft, cloud->count * sizeof *keep);
             if (spacing) *spacing = found;

@@ -3,6 +3,7 @@
 #include "traits/pass.h"
 
 #include "cloud/clock.h"
+#include "segment/sparse_tips.h"
 #include "traits/axis.h"
 #include "traits/evaluate.h"
 #include "traits/plan.h"
@@ -27,7 +28,7 @@ typedef struct plant_job {
     bool has_labels;        /* the cloud came with labels */
     plm_cloud *cloud;       /* the pass's copy of points */
     uint8_t *label;         /* ground by plm_find_ground: of cloud's points; NULL where labels came with the cloud */
-    bool *keep;             /* by plm_clean; NULL: all */
+    bool *keep, *tip;       /* by plm_clean_but_tips; NULL: all, none */
     plm_scene scene;
 } plant_job;
 
@@ -86,7 +87,9 @@ static plm_status run_ground(plant_job *job, plm_error *error)
 static plm_status run_clean(plant_job *job, plm_error *error)
 {
     job->keep = plm_alloc(job->cloud->count, sizeof *job->keep, error);
-    return job->keep ? plm_clean(job->cloud, job->label, job->keep, NULL, error) : PLM_E_MEMORY;
+    job->tip = plm_alloc(job->cloud->count, sizeof *job->tip, error);
+    if (!job->keep || !job->tip) return PLM_E_MEMORY;
+    return plm_clean_but_tips(job->cloud, job->label, job->keep, job->tip, NULL, error);
 }
 
 /* The rows that the trait functions call the plant: by the labels that came with the cloud, else all that is neither
@@ -101,7 +104,8 @@ static plm_status gather_plant(plant_job *job, plm_error *error)
         if (job->has_labels)
             is_plant[i] = cloud->label[i] >= PLM_LABEL_STEM && cloud->label[i] <= PLM_LABEL_LEAF;
         else
-            is_plant[i] = (!job->label || job->label[i] != PLM_LABEL_GROUND) && (!job->keep || job->keep[i]);
+            is_plant[i] =
+                (!job->label || job->label[i] != PLM_LABEL_GROUND) && (!job->keep || job->keep[i] || job->tip[i]);
     }
     job->scene.cloud = cloud;
     job->scene.options = job->options;
@@ -145,6 +149,10 @@ static plm_status run_segment(plant_job *job, plm_error *error)
         return PLM_OK;
     }
     if (status != PLM_OK) return plm_fail(error, status, "%s", trouble.message);
+    if (job->keep) {
+        const plm_status tips = plm_label_tips(job->cloud, job->keep, job->tip, &job->pass->segmentation, error);
+        if (tips != PLM_OK) return tips;
+    }
     return job->pass->segmentation.warning[0] ? warn(job, error, "%s", job->pass->segmentation.warning) : PLM_OK;
 }
 
@@ -328,6 +336,7 @@ static void free_job(plant_job *job)
 {
     plm_scene_free(&job->scene);
     plm_free(job->keep);
+    plm_free(job->tip);
     plm_free(job->label);
 }
 

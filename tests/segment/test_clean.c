@@ -4,6 +4,8 @@
 #include "cloud/linear.h"
 #include "io/io.h"
 #include "segment/segment.h"
+#include "segment/sparse_tips.h"
+#include "simulate/simulate.h"
 #include "support/scene.h"
 
 static const test_scene plant = {.points = 200000, .leaf_length = 0.35, .noise = 0.0005, .spacing = 0.005, .seed = 7};
@@ -210,7 +212,97 @@ static void clouds_with_known_truth_lose_floaters_only(void **unused)
     }
 }
 
-/* A small dense plant in a wide cloud of even floaters: their nearest ones are floaters too, none of the plant's. */
+/* The tips of two leaves of this maize lie beyond what most photographs show: 20 mm of them were taken for floaters. */
+static void sparse_tips_are_no_floaters(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_virtual_plant grown;
+    plm_scan scan;
+    const plm_scan_options options = {
+        .scanner = PLM_SCANNER_SPLAT, .seed = 31012, .points = 45000, .noise = 5e-4, .outliers = 0.01};
+    assert_ok(plm_plant_grow("maize", &(plm_plant_options){.seed = 31012, .resolution = 0.5}, &grown, &error));
+    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    const plm_cloud *cloud = &scan.cloud;
+    bool *keep = malloc(cloud->count), *tip = malloc(cloud->count);
+    plm_segmentation found;
+    assert_ok(plm_clean_but_tips(cloud, NULL, keep, tip, NULL, &error));
+    assert_ok(plm_segment(cloud, NULL, keep, NULL, &found, &error));
+    assert_ok(plm_label_tips(cloud, keep, tip, &found, &error));
+    size_t leaf = 0, lost = 0, tips = 0, floaters = 0, unlike = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        leaf += cloud->label[i] == PLM_LABEL_LEAF;
+        lost += cloud->label[i] == PLM_LABEL_LEAF && !keep[i] && !tip[i];
+        assert_true(!keep[i] || !tip[i]);
+        tips += tip[i];
+        floaters += tip[i] && cloud->label[i] == PLM_LABEL_OTHER;
+        unlike += tip[i] && found.label[i] != cloud->label[i];
+    }
+    print_message("%zu of %zu points of the leaves lost, %zu in tips, %zu floaters among them, %zu mislabelled\n", lost,
+                  leaf, tips, floaters, unlike);
+    assert_true((double)lost < 0.003 * (double)leaf);
+    assert_true(tips > 300 && floaters <= 2 && unlike < tips / 20);
+    plm_segmentation_free(&found);
+    free(keep);
+    free(tip);
+    plm_scan_free(&scan);
+    plm_virtual_plant_free(&grown);
+}
+
+/* A strip whose points grow sparse, all of that dropped, is a tip; a tuft beside it, off its plane, is none. */
+static void what_goes_on_in_the_plane_is_a_tip(void **unused)
+{
+    (void)unused;
+    enum { LONG = 4000, TUFT = 40 };
+    static float xyz[LONG + TUFT][3];
+    static bool drop[LONG + TUFT], tip[LONG + TUFT];
+    plm_error error = {0};
+    uint64_t state = 3;
+    for (int i = 0; i < LONG; i++) { /* twice as far apart at the end as at the start */
+        const double u = test_uniform(&state), x = u < 0.8 ? u : 0.8 + (u - 0.8) * (1 + 8 * (u - 0.8));
+        xyz[i][0] = (float)(0.1 * x), xyz[i][1] = (float)(0.01 * test_uniform(&state));
+        xyz[i][2] = (float)(5e-5 * test_normal(&state));
+        drop[i] = u > 0.85;
+    }
+    for (int i = LONG; i < LONG + TUFT; i++) {
+        xyz[i][0] = (float)(0.09 + 0.002 * test_uniform(&state)), xyz[i][1] = (float)(0.01 * test_uniform(&state));
+        xyz[i][2] = (float)(1e-3 + 1e-3 * test_uniform(&state));
+        drop[i] = true;
+    }
+    plm_index *index;
+    assert_ok(plm_index_build((const float(*)[3])xyz, COUNT(xyz), &index, &error));
+    assert_ok(plm_sparse_tips(index, (const float(*)[3])xyz, COUNT(xyz), drop, tip, &error));
+    plm_index_free(index);
+    int strip = 0, tuft = 0;
+    for (int i = 0; i < LONG + TUFT; i++) (i < LONG ? (strip += drop[i] && !tip[i]) : (tuft += drop[i] && !tip[i]));
+    print_message("%d of the strip and %d of the tuft are dropped\n", strip, tuft);
+    assert_true(strip <= 20);
+    assert_int_equal(tuft, TUFT);
+}
+
+/* Whether depth images were fused tells at any size: 300 000 points are looked at in boxes. */
+static void voxel_means_are_told_in_boxes(void **unused)
+{
+    (void)unused;
+    enum { SIDE = 550, ALL = SIDE * SIDE };
+    float(*xyz)[3] = malloc(ALL * sizeof *xyz);
+    assert_non_null(xyz);
+    plm_error error = {0};
+    for (int fused = 0; fused <= 1; fused++) {
+        uint64_t state = 4;
+        for (int i = 0; i < ALL; i++) {
+            const double x = test_uniform(&state), y = test_uniform(&state);
+            xyz[i][0] = (float)(fused ? i / SIDE + 0.3 * x : SIDE * x);
+            xyz[i][1] = (float)(fused ? i % SIDE + 0.3 * y : SIDE * y);
+            xyz[i][2] = 0;
+        }
+        bool answer = !fused;
+        assert_ok(plm_are_voxel_means((const float(*)[3])xyz, ALL, 2, &answer, &error));
+        assert_int_equal(answer, fused);
+    }
+    free(xyz);
+}
+
 /* Tufts of so few points that the sixth neighbour of each lies in the next tuft: as far apart as one another, they were
  * taken for one sparse piece of the plant that is longer than its distance to it. */
 static void floaters_do_not_hold_one_another(void **unused)
@@ -249,6 +341,9 @@ int main(void)
         cmocka_unit_test(floaters_do_not_hold_one_another),
         cmocka_unit_test(a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays),
         cmocka_unit_test(thin_stems_and_sparse_regions_stay),
+        cmocka_unit_test(sparse_tips_are_no_floaters),
+        cmocka_unit_test(what_goes_on_in_the_plane_is_a_tip),
+        cmocka_unit_test(voxel_means_are_told_in_boxes),
         cmocka_unit_test(ground_is_neither_judged_nor_counted),
         cmocka_unit_test(rows_may_come_in_any_order),
         cmocka_unit_test(few_or_coinciding_points_are_kept),

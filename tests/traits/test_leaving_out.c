@@ -5,6 +5,7 @@
 #include "cloud/all_nearest.h"
 #include "io/geographic.h"
 #include "io/io.h"
+#include "segment/sparse_tips.h"
 #include "support/scene.h"
 #include "traits/axis.h"
 #include "traits/plan.h"
@@ -50,8 +51,9 @@ COUNTED(segment, plm_segment,
         (const plm_cloud *cloud, const uint8_t *label, const bool *keep, const plm_segment_options *options,
          plm_segmentation *result, plm_error *error),
         (cloud, label, keep, options, result, error))
-COUNTED(clean, plm_clean, (const plm_cloud *cloud, const uint8_t *label, bool *keep, double *spacing, plm_error *error),
-        (cloud, label, keep, spacing, error))
+COUNTED(clean, plm_clean_but_tips,
+        (const plm_cloud *cloud, const uint8_t *label, bool *keep, bool *tip, double *spacing, plm_error *error),
+        (cloud, label, keep, tip, spacing, error))
 COUNTED(stem, plm_sketch_stem, (struct plm_sketch * sketch, plm_error *error), (sketch, error))
 COUNTED(surfaces, plm_leaf_surface_make,
         (const float (*xyz)[3], size_t count, const plm_surface_options *options, plm_leaf_surface *surface,

@@ -98,6 +98,53 @@ static void ellipsoids_have_their_extents_hull_and_shadow(void **unused)
         }
 }
 
+/* Narrow triangles about a middle, of which the hull's corners are the tips. */
+static plm_cloud star(void)
+{
+    enum { RAYS = 10, ON_RAY = 600 };
+    plm_error error = {0};
+    plm_cloud cloud;
+    assert_ok(plm_cloud_create((size_t)RAYS * ON_RAY, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    uint64_t state = 6;
+    for (int i = 0; i < RAYS * ON_RAY; i++) {
+        const double turn = 2.4 * (i / ON_RAY), rise = -0.8 + 1.6 * (i / ON_RAY) / (RAYS - 1);
+        const double along = 0.1 * (1 - sqrt(test_uniform(&state)));
+        const double across = 0.15 * (0.1 - along) * (test_uniform(&state) - 0.5);
+        cloud.xyz[i][0] = (float)(along * cos(turn) * cos(rise) - across * sin(turn));
+        cloud.xyz[i][1] = (float)(along * sin(turn) * cos(rise) + across * cos(turn));
+        cloud.xyz[i][2] = (float)(along * sin(rise));
+        cloud.label[i] = PLM_LABEL_LEAF;
+        cloud.organ[i] = i / ON_RAY;
+    }
+    return cloud;
+}
+
+/* What a hull lacks is told by random halves of the points: which ones is chance, and must not show. */
+static void hulls_hardly_depend_on_the_seed(void **unused)
+{
+    (void)unused;
+    enum { SEEDS = 24 };
+    plm_error error = {0};
+    double sum = 0, squares = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        plm_cloud cloud = star();
+        plm_measure_options options;
+        plm_measure_defaults(&options);
+        options.traits = "convex_hull_volume";
+        options.up = PLM_UP_Z;
+        options.ground = PLM_GROUND_NONE;
+        options.seed = seed;
+        plm_measurement m;
+        assert_ok(plm_measure(&cloud, &options, &m, &error));
+        const double volume = find(&m, "convex_hull_volume")->value;
+        sum += volume, squares += volume * volume;
+        plm_measurement_free(&m);
+    }
+    const double mean = sum / SEEDS, sd = sqrt(squares / SEEDS - mean * mean) / mean;
+    print_message("SD over seeds: %.4f %%\n", 100 * sd);
+    assert_true(sd < 0.0115); /* 0.0124 where halves are drawn apart from each other */
+}
+
 /* Far more points than the noise lets through: the highest of them are those that noise threw out, and must not draw the surface
  * to themselves. */
 static void the_noise_of_dense_clouds_does_not_swell_a_plant(void **unused)
@@ -187,6 +234,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ellipsoids_have_their_extents_hull_and_shadow),
+        cmocka_unit_test(hulls_hardly_depend_on_the_seed),
         cmocka_unit_test(the_noise_of_dense_clouds_does_not_swell_a_plant),
         cmocka_unit_test(known_plants_are_measured_within_the_bounds),
     };
