@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "cloud/linear.h"
+#include "cloud/order.h"
 #include "cloud/sampling.h"
 #include "segment/scratch.h"
 #include "segment/subset.h"
@@ -58,11 +59,7 @@ static float usual_spacing(const tips *t, const uint32_t *row)
         float squared[FOURTH];
         if (kept_near(t, row[j], FOURTH, near, squared) == FOURTH) value[values++] = squared[FOURTH - 1];
     }
-    for (size_t i = 1; i < values; i++)
-        for (size_t j = i; j > 0 && value[j - 1] > value[j]; j--) {
-            const float swap = value[j];
-            value[j] = value[j - 1], value[j - 1] = swap;
-        }
+    plm_order_sort(value, values);
     return values ? value[values / 2] : 0;
 }
 
