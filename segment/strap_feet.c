@@ -9,10 +9,11 @@
 
 #include <math.h>
 
-static const double LEG = 0.1;           /* length of a leg below the meeting, in sizes of the plant */
+static const double LEG = 0.07;          /* length of a leg below the meeting, in sizes of the plant */
 static const double LEAST_SHARE = 0.005; /* of the points that a leg holds at least */
 static const double CLEAR = 2;           /* nearer to the stem's line, in its radii, feet wrap the stem and touch */
-static const double APART = 0.08;        /* of the lower ends of two legs, in sizes: else a leaf with a slit */
+static const double APART = 0.08;        /* of the lower ends of two legs, in sizes: else a leaf with a slit, ... */
+static const double NODES = 0.05;        /* ... unless both stand on the stem, this far apart along it */
 
 typedef struct work {
     plm_sketch *sketch;
@@ -57,6 +58,25 @@ static void find_ends(work *w, size_t leaves)
     }
 }
 
+/* Where along the stem a leg stands; false: it ends far from it. */
+static bool find_foot(const work *w, size_t leg, double *along)
+{
+    const plm_sketch *s = w->sketch;
+    plm_stem_place place = {0};
+    const double off = plm_stem_nearest(&s->stem, s->working.xyz[w->low[leg]], &place);
+    *along = place.along;
+    return off < 2 * CLEAR * place.radius + 2 * s->scale.noise;
+}
+
+/* Whether two legs are feet of two leaves. */
+static bool are_apart(const work *w, size_t a, size_t b)
+{
+    const plm_sketch *s = w->sketch;
+    double first, second;
+    if (plm_graph_length(&s->graph, w->low[a], w->low[b]) > APART * s->scale.size) return true;
+    return find_foot(w, a, &first) && find_foot(w, b, &second) && fabs(first - second) > NODES * s->scale.size;
+}
+
 static int32_t new_leaf(const work *w, size_t leg, double *foot, size_t *leaves)
 {
     foot[*leaves] = w->from_base[w->low[leg]];
@@ -77,7 +97,7 @@ static void name_legs(work *w, double *foot, size_t *leaves)
         for (size_t j = 0; j < k; j++) {
             if (s->leaf[w->low[j]] != own) continue;
             is_first = false;
-            is_apart &= plm_graph_length(&s->graph, w->low[k], w->low[j]) > APART * s->scale.size;
+            is_apart &= are_apart(w, k, j);
         }
         if (is_first)
             w->leaf[k] = own;

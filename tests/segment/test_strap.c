@@ -290,6 +290,30 @@ static void round_straps_are_no_branches(void **unused)
           1, 0.6);
 }
 
+/* Two blades touch a hand above the upper one's foot, and lie on each other for most of the way. */
+static void blades_that_touch_for_long_are_two(void **unused)
+{
+    (void)unused;
+    const plm_scan_options splat = {.scanner = PLM_SCANNER_SPLAT, .seed = 34002, .points = 45000, .noise = 5e-4};
+    assert_true(check("maize", PLM_HABIT_STRAP, 34002, &splat, 1, 0.9).worst_leaf >= 0.9);
+}
+
+/* Noise of a fourth of the stem's radius leaves few feet as thick as it: that blades are long and begin at the stem tells. */
+static void long_blades_at_the_stem_are_straps(void **unused)
+{
+    (void)unused;
+    plm_scan_options camera = {.scanner = PLM_SCANNER_RGBD,
+                               .points = 45000,
+                               .noise = 2e-4,
+                               .views = 12,
+                               .image_width = 1400,
+                               .outliers = 0.005,
+                               .seed = 34019};
+    check("maize", PLM_HABIT_STRAP, 34019, &camera, 1, 0.85);
+    camera.noise = 3e-4, camera.seed = 34007;
+    check("maize", PLM_HABIT_STRAP, 34007, &camera, 1, 0.85);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
@@ -311,6 +335,8 @@ int main(void)
                                        cmocka_unit_test(blades_on_one_foot_are_leaflets),
                                        cmocka_unit_test(blades_on_long_rachises_are_no_straps),
                                        cmocka_unit_test(bare_branches_bear_no_leaves),
-                                       cmocka_unit_test(round_straps_are_no_branches)};
+                                       cmocka_unit_test(round_straps_are_no_branches),
+                                       cmocka_unit_test(blades_that_touch_for_long_are_two),
+                                       cmocka_unit_test(long_blades_at_the_stem_are_straps)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
