@@ -33,16 +33,25 @@ static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
  * real ones); 200 virtual plants with petioles at 0.45 and more. Two of those that begin beyond a half had thick feet: a tomato in
  * noise (0.66), and a real one (0.79) so young that two or three leaves stand on one foot and are better parted as straps. */
 static const double ON_PETIOLES = 0.5, STRAP_ON_PETIOLES = 0.75;
-/* Where noise leaves less evidence than that at the feet, the blades' shape tells: those of straps are long (squared length over area)
- * and begin at the stem. Virtual maize in 1.6 to 3.5 mm of noise, that was taken for others: 3.4 at least and 0.1 to 0.53. 250 virtual
- * scans of others that begin within 0.55: 2.2 at most; of young real tomatoes, whose cotyledons are long, 3.3 to 4.8 and 0.33 at least. */
-static const double STRAP_LONG = 2.7, STRAP_START = 0.3, STRAP_LEAST = 0.15;
+/* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
+ * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less tube at their
+ * foot than petioles (counted: noise hides a few large leaves' feet). Virtual maize in 1.6 to 3.5 mm of noise that was taken for other
+ * kinds: noise 0.14 of the radius at least, length 3.3 at least, beginning 0.1 to 0.56, three of five feet and more. 250 virtual scans of other kinds
+ * that begin within 0.6: length 2.2 at most; young real tomatoes, whose cotyledons are long: 3.3 to 4.8, but 0.33 at least, and half of their feet at
+ * most. However many blades a leaf has: noise tears them. */
+static const double STRAP_NOISE = 0.1, STRAP_LONG = 2.7, STRAP_START = 0.3, STRAP_START_TUBELESS = 0.6,
+                    STRAP_LEAST = 0.15;
 static const double BLADE_ENDS = 0.02; /* quantile of a blade's distances: some points are strays */
+
+static bool is_tubeless(const plm_side_group *group)
+{
+    return group->tube_share < STRAP_TUBE;
+}
 
 /* How much a leaf looks like a strap: by its feet as thick as the stem, and where slimmer ones count as well. */
 static void strap_evidence(const plm_sketch *sketch, const plm_side_group *group, double *thick, double *slim)
 {
-    const double ratio = group->tube_radius / sketch->scale.stem_radius, tubes = 0.5 * (group->tube_share < STRAP_TUBE);
+    const double ratio = group->tube_radius / sketch->scale.stem_radius, tubes = 0.5 * is_tubeless(group);
     const bool is_thick = ratio > STRAP_RADIUS || ratio == 0;
     *thick = tubes + 0.5 * is_thick;
     *slim = tubes + 0.5 * (is_thick ? 1 : fmax((ratio - STRAP_SLIM) / (STRAP_RADIUS - STRAP_SLIM), 0));
@@ -106,7 +115,7 @@ static plm_status find_blade_shape(const plm_sketch *sketch, const plm_side_grou
     *shape = (blade_shape){0};
     float *value = plm_alloc(sketch->working.count, sizeof *value, error);
     if (!value) return PLM_E_MEMORY;
-    double begin = 0, length = 0, squared = 0, all = 0;
+    double begin = 0, length = 0, squared_length = 0, area_sum = 0;
     for (size_t b = 0; b < groups->blade_count; b++) {
         const double area = groups->blade_area[b];
         if (area < plm_blade_least(sketch)) continue;
@@ -117,17 +126,18 @@ static plm_status find_blade_shape(const plm_sketch *sketch, const plm_side_grou
         const double low = plm_quantile(value, count, BLADE_ENDS), high = plm_quantile(value, count, 1 - BLADE_ENDS);
         begin += area * low;
         length += area * (high - low);
-        squared += (high - low) * (high - low);
-        all += area;
+        squared_length += (high - low) * (high - low);
+        area_sum += area;
     }
     plm_free(value);
-    if (length > 0) *shape = (blade_shape){begin / length, squared / all};
+    if (length > 0) *shape = (blade_shape){begin / length, squared_length / area_sum};
     return PLM_OK;
 }
 
 /* What the leaves look like; evidence is weighed by area, of those that have feet. */
 typedef struct leaf_tally {
     size_t leafy, blades, most; /* groups with blades, their blades, those of the group with the most */
+    size_t feet, tubeless;      /* groups with feet, those with less tube there than petioles */
     double area, strap, slim_strap;
 } leaf_tally;
 
@@ -141,6 +151,8 @@ static leaf_tally count_leaves(const plm_sketch *sketch, const plm_side_groups *
         tally.blades += group->blades;
         if (group->blades > tally.most) tally.most = group->blades;
         if (!group->has_foot) continue;
+        tally.feet++;
+        tally.tubeless += is_tubeless(group);
         tally.area += group->blade_area;
         double thick, slim;
         strap_evidence(sketch, group, &thick, &slim);
@@ -155,6 +167,14 @@ static bool have_thick_feet(const plm_sketch *sketch, const leaf_tally *tally, b
 {
     const double least = many ? STRAP_OF_MANY : sketch->scale.rises ? STRAP_RISING : STRAP_EVIDENCE;
     return tally->strap > least * tally->area;
+}
+
+/* Whether blades are as those of straps, where noise is such that feet do not tell. */
+static bool have_long_blades(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape)
+{
+    const double latest = 2 * tally->tubeless > tally->feet ? STRAP_START_TUBELESS : STRAP_START;
+    return sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius && tally->strap > STRAP_LEAST * tally->area &&
+           shape->elongation > STRAP_LONG && shape->start <= latest;
 }
 
 plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *groups, plm_habit *habit, plm_error *error)
@@ -180,10 +200,9 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         blade_shape shape;
         const plm_status status = find_blade_shape(sketch, groups, &shape, error);
         if (status != PLM_OK) return status;
-        if (strap && !slim && compound && tally.strap <= STRAP_ON_PETIOLES * tally.area)
-            strap = shape.start <= ON_PETIOLES;
-        else if (!strap && tally.strap > STRAP_LEAST * tally.area)
-            strap = shape.elongation > STRAP_LONG && shape.start <= STRAP_START;
+        const bool is_doubtful = strap && !slim && compound && tally.strap <= STRAP_ON_PETIOLES * tally.area;
+        if (is_doubtful) strap = shape.start <= ON_PETIOLES;
+        strap = strap || have_long_blades(sketch, &tally, &shape);
         *habit = strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
     }
     return PLM_OK;

@@ -1,6 +1,6 @@
 /* segment/strap_feet.c: where the tip of one blade lies on another, the tree that grows from the tips has one leaf of both.
- * The same tree upside down grows from the feet: where two legs of a leaf meet that are long and stand apart, it is two
- * leaves, and the meeting is a touch. */
+ * The same tree upside down grows from the feet: where two legs of a leaf meet that are long and end apart, or stand on the stem
+ * at two nodes, it is two leaves, and the meeting is a touch. */
 #include "segment/strap_feet.h"
 
 #include "segment/merge_tree.h"
@@ -12,8 +12,10 @@
 static const double LEG = 0.07;          /* length of a leg below the meeting, in sizes of the plant */
 static const double LEAST_SHARE = 0.005; /* of the points that a leg holds at least */
 static const double CLEAR = 2;           /* nearer to the stem's line, in its radii, feet wrap the stem and touch */
-static const double APART = 0.08;        /* of the lower ends of two legs, in sizes: else a leaf with a slit, ... */
-static const double NODES = 0.05;        /* ... unless both stand on the stem, this far apart along it */
+/* Two legs are two leaves if so long as this, their lower ends so far apart, both in sizes: else a leaf with a slit, ... */
+static const double FREE_LEG = 0.1, APART = 0.08;
+/* ... or both begin so near to what is cleared away about the stem (radii), so far apart along it (sizes). */
+static const double ON_STEM = 1, NODES = 0.05;
 
 typedef struct work {
     plm_sketch *sketch;
@@ -22,10 +24,18 @@ typedef struct work {
     int32_t *leg;
     size_t legs;
     uint32_t *low;   /* of each leg, the point nearest to the base */
+    float *length;   /* of each leg, from there on */
     uint32_t *tip;   /* of each leaf, its farthest point */
     int32_t *leaf;   /* of each leg, the leaf that it becomes; -1: none of its own */
     double farthest; /* of all points */
 } work;
+
+/* How far a point is outside of what feet wrap; below 0 within it. */
+static double clear_of_stem(const plm_sketch *s, uint32_t i, plm_stem_place *place)
+{
+    const double off = plm_stem_nearest(&s->stem, s->working.xyz[i], place);
+    return off - CLEAR * place->radius - 2 * s->scale.noise;
+}
 
 static void start_from_feet(work *w)
 {
@@ -34,12 +44,11 @@ static void start_from_feet(work *w)
         if (isfinite(w->from_base[i])) w->farthest = fmax(w->farthest, w->from_base[i]);
         w->reach[i] = (float)(LEG * s->scale.size);
     }
-    for (size_t i = 0; i < s->working.count; i++) {
+    for (uint32_t i = 0; i < s->working.count; i++) {
         plm_stem_place place = {0};
         w->upside[i] = INFINITY;
         if (s->leaf[i] < 0 || s->is_stem[i] || !isfinite(w->from_base[i])) continue;
-        const double off = plm_stem_nearest(&s->stem, s->working.xyz[i], &place);
-        if (off > CLEAR * place.radius + 2 * s->scale.noise) w->upside[i] = (float)(w->farthest - w->from_base[i]);
+        if (clear_of_stem(s, i, &place) > 0) w->upside[i] = (float)(w->farthest - w->from_base[i]);
     }
 }
 
@@ -56,25 +65,30 @@ static void find_ends(work *w, size_t leaves)
         uint32_t *low = &w->low[w->leg[i]];
         if (*low == UINT32_MAX || w->upside[i] > w->upside[*low]) *low = i;
     }
+    for (size_t i = 0; i < s->working.count; i++) {
+        if (!isfinite(w->upside[i]) || w->leg[i] < 0) continue;
+        float *length = &w->length[w->leg[i]];
+        *length = fmaxf(*length, w->upside[w->low[w->leg[i]]] - w->upside[i]);
+    }
 }
 
-/* Where along the stem a leg stands; false: it ends far from it. */
+/* Whether a leg begins beside the stem, and where along it. */
 static bool find_foot(const work *w, size_t leg, double *along)
 {
-    const plm_sketch *s = w->sketch;
     plm_stem_place place = {0};
-    const double off = plm_stem_nearest(&s->stem, s->working.xyz[w->low[leg]], &place);
+    const double off = clear_of_stem(w->sketch, w->low[leg], &place);
     *along = place.along;
-    return off < 2 * CLEAR * place.radius + 2 * s->scale.noise;
+    return off < ON_STEM * place.radius;
 }
 
-/* Whether two legs are feet of two leaves. */
+/* Whether two legs are of two leaves. */
 static bool are_apart(const work *w, size_t a, size_t b)
 {
     const plm_sketch *s = w->sketch;
+    const double size = s->scale.size, shorter = (double)fminf(w->length[a], w->length[b]);
     double first, second;
-    if (plm_graph_length(&s->graph, w->low[a], w->low[b]) > APART * s->scale.size) return true;
-    return find_foot(w, a, &first) && find_foot(w, b, &second) && fabs(first - second) > NODES * s->scale.size;
+    if (shorter > FREE_LEG * size && plm_graph_length(&s->graph, w->low[a], w->low[b]) > APART * size) return true;
+    return find_foot(w, a, &first) && find_foot(w, b, &second) && fabs(first - second) > NODES * size;
 }
 
 static int32_t new_leaf(const work *w, size_t leg, double *foot, size_t *leaves)
@@ -145,6 +159,7 @@ plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, float *out
         status = plm_merge_tree_by(&sketch->graph, &rule, w.leg, &w.legs, error);
     }
     w.low = plm_scratch_take(&scratch, w.legs + 1, sizeof *w.low);
+    w.length = plm_scratch_take(&scratch, w.legs + 1, sizeof *w.length);
     w.leaf = plm_scratch_take(&scratch, w.legs + 1, sizeof *w.leaf);
     if (status == PLM_OK && scratch.failed) status = PLM_E_MEMORY;
     if (status == PLM_OK) {
