@@ -34,11 +34,11 @@ static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
  * noise (0.66), and a real one (0.79) so young that two or three leaves stand on one foot and are better parted as straps. */
 static const double ON_PETIOLES = 0.5, STRAP_ON_PETIOLES = 0.75;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
- * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less tube at their
- * foot than petioles (counted: noise hides a few large leaves' feet). Virtual maize in 1.6 to 3.5 mm of noise that was taken for other
- * kinds: noise 0.14 of the radius at least, length 3.3 at least, beginning 0.1 to 0.56, three of five feet and more. 250 virtual scans of other kinds
- * that begin within 0.6: length 2.2 at most; young real tomatoes, whose cotyledons are long: 3.3 to 4.8, but 0.33 at least, and half of their feet at
- * most. However many blades a leaf has: noise tears them. */
+ * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
+ * tube at their foot than petioles (counted: noise hides a few large leaves' feet), however many blades a leaf has: noise tears
+ * them. Virtual maize in 1.6 to 3.5 mm of noise that was taken for other kinds: noise 0.14 of the radius at least, length 3.3 at
+ * least, beginning 0.1 to 0.56, three of five feet and more. 250 virtual scans of other kinds that begin within 0.6: length 2.2 at
+ * most; young real tomatoes, whose cotyledons are long: 3.3 to 4.8, but 0.33 at least, and half of their feet at most. */
 static const double STRAP_NOISE = 0.1, STRAP_LONG = 2.7, STRAP_START = 0.3, STRAP_START_TUBELESS = 0.6,
                     STRAP_LEAST = 0.15;
 static const double BLADE_ENDS = 0.02; /* quantile of a blade's distances: some points are strays */
@@ -169,12 +169,17 @@ static bool have_thick_feet(const plm_sketch *sketch, const leaf_tally *tally, b
     return tally->strap > least * tally->area;
 }
 
-/* Whether blades are as those of straps, where noise is such that feet do not tell. */
-static bool have_long_blades(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape)
+/* Whether noise is such that feet which tell something do not tell enough. */
+static bool may_hide_feet(const plm_sketch *sketch, const leaf_tally *tally)
+{
+    return sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius && tally->strap > STRAP_LEAST * tally->area;
+}
+
+/* Whether blades are long and near to the stem, as those of straps. */
+static bool have_long_blades(const leaf_tally *tally, const blade_shape *shape)
 {
     const double latest = 2 * tally->tubeless > tally->feet ? STRAP_START_TUBELESS : STRAP_START;
-    return sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius && tally->strap > STRAP_LEAST * tally->area &&
-           shape->elongation > STRAP_LONG && shape->start <= latest;
+    return shape->elongation > STRAP_LONG && shape->start <= latest;
 }
 
 plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *groups, plm_habit *habit, plm_error *error)
@@ -197,12 +202,14 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         const bool many = !sketch->scale.rises && (double)tally.blades >= MANY_BLADES * (double)tally.leafy;
         const bool slim = !many && tally.slim_strap + tubes * tally.area > STRAP_WITH_TUBES * tally.area;
         bool strap = slim || have_thick_feet(sketch, &tally, many);
-        blade_shape shape;
-        const plm_status status = find_blade_shape(sketch, groups, &shape, error);
-        if (status != PLM_OK) return status;
         const bool is_doubtful = strap && !slim && compound && tally.strap <= STRAP_ON_PETIOLES * tally.area;
-        if (is_doubtful) strap = shape.start <= ON_PETIOLES;
-        strap = strap || have_long_blades(sketch, &tally, &shape);
+        const bool hidden = may_hide_feet(sketch, &tally);
+        if (is_doubtful || (!strap && hidden)) {
+            blade_shape shape;
+            const plm_status status = find_blade_shape(sketch, groups, &shape, error);
+            if (status != PLM_OK) return status;
+            strap = (is_doubtful && shape.start <= ON_PETIOLES) || (hidden && have_long_blades(&tally, &shape));
+        }
         *habit = strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
     }
     return PLM_OK;

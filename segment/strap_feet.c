@@ -1,6 +1,6 @@
 /* segment/strap_feet.c: where the tip of one blade lies on another, the tree that grows from the tips has one leaf of both.
- * The same tree upside down grows from the feet: where two legs of a leaf meet that are long and end apart, or stand on the stem
- * at two nodes, it is two leaves, and the meeting is a touch. */
+ * The same tree upside down grows from the feet: where two legs of a leaf meet that are long and end apart, or stand on
+ * the stem at two nodes, it is two leaves, and the meeting is a touch. */
 #include "segment/strap_feet.h"
 
 #include "segment/merge_tree.h"

@@ -298,8 +298,8 @@ static void blades_that_touch_for_long_are_two(void **unused)
     assert_true(check("maize", PLM_HABIT_STRAP, 34002, &splat, 1, 0.9).worst_leaf >= 0.9);
 }
 
-/* Noise of a seventh to a third of the stem's radius leaves few feet as thick as it: that blades are long and begin at the stem tells, or
- * (34003) near it where most feet are no tubes. */
+/* Noise of a seventh to a third of the stem's radius leaves few feet as thick as it: that blades are long and begin at the stem
+ * tells, or (34003) near it where most feet are no tubes. */
 static void long_blades_at_the_stem_are_straps(void **unused)
 {
     (void)unused;
