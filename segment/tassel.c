@@ -13,11 +13,15 @@ enum { STRANDS = 4, STRAND_LEAST = 5 /* points */, OTHERS = 3 /* leaves whose wi
 static const double STANDS_OUT = 0.1; /* of the leaf's length, beyond the fork: less is no strand */
 static const double THIN = 0.4;       /* width of a strand, of the other leaves' median width */
 static const double MEAN = 0.5; /* the same over all strands and what they stand on: a torn rim has thin ends too */
-static const double TOP = 0.9;  /* of the highest foot: leaves from there on may be a tassel */
+/* Where all its strands are thin: the share of the points that they hold at least. Of virtual tassels half and more, of a narrow
+ * leaf with fringes a tenth. */
+static const double STRAND_SHARE = 0.25;
+static const double TOP = 0.9; /* of the highest foot: leaves from there on may be a tassel */
 
 /* A leaf, or what was taken for one. */
 typedef struct blade {
     size_t points, thin, wide; /* thin, wide: strands */
+    size_t strand_points;      /* of thin ones */
     double length, strands;    /* strands: length of all of them together */
     float fork, wide_fork;     /* the nearest fork of its thin strands, and of its wide ones */
     bool is_tassel;
@@ -101,6 +105,7 @@ static void judge_strands(work *w, size_t leaf, double width)
         float *fork = t->is_thin ? &b->fork : &b->wide_fork;
         *fork = fminf(*fork, t->fork);
         b->strands += t->tip - t->fork;
+        b->strand_points += t->is_thin ? t->points : 0;
         if (t->is_thin)
             b->thin++;
         else
@@ -123,7 +128,8 @@ static bool judge_blades(work *w)
         judge_strands(w, k, width);
         if (b->thin < STRANDS) continue;
         const double length = b->strands + fmax(0, fminf(b->fork, b->wide_fork) - w->foot[k]);
-        b->is_tassel = (double)b->points * cell * cell < MEAN * width * length;
+        const bool is_fringed = !b->wide && (double)b->strand_points < STRAND_SHARE * (double)b->points;
+        b->is_tassel = !is_fringed && (double)b->points * cell * cell < MEAN * width * length;
         any = any || b->is_tassel;
     }
     return any;

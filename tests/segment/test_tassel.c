@@ -131,6 +131,21 @@ static void assert_stays(drawing *d, size_t leaves, double at)
     for (size_t i = 0; i < d->sketch.working.count; i++) assert_true(d->leaf[i] >= 0);
 }
 
+/* A narrow leaf, whose tip is torn in two and that has fringes at its rims: thin strands, but few points are theirs. */
+static void a_narrow_leaf_with_fringes_is_a_leaf(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    draw(&d, 3, 0, false);
+    add_strip(&d, -1e-3, 0.52, 60, 4, 0, TASSEL, false);
+    for (int side = -1; side <= 1; side += 2) {
+        add_strip(&d, -1e-3, 0.64, 14, 1, side, TASSEL, false);
+        add_strip(&d, -1e-3, 0.58, 14, 1, side, TASSEL, false);
+    }
+    link_all(&d);
+    assert_stays(&d, 4, 0.5);
+}
+
 /* Torn in three, fringed at its rim, low on the stem, on a plant whose other leaves are too few to tell how wide leaves are, or narrow
  * and with scraps beside it. */
 static void a_torn_leaf_is_a_leaf(void **unused)
@@ -159,6 +174,7 @@ int main(void)
         cmocka_unit_test(a_virtual_maize_has_its_leaves_and_no_more),
         cmocka_unit_test(strands_at_the_top_are_a_tassel),
         cmocka_unit_test(a_torn_leaf_is_a_leaf),
+        cmocka_unit_test(a_narrow_leaf_with_fringes_is_a_leaf),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
