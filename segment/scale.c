@@ -26,10 +26,15 @@ static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of t
 static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette; ... */
 /* ... or for this where the smallest balls are so large a share of the size (COARSE), and the noise of them (BLUR), that they see little of
  * short petioles: noise over radius is 0.1 and more in small rosettes, 0.02 in heads of a few thousand points. */
-static const double TUBE_BLURRED = 0.045, COARSE = 0.03, BLUR = 0.08;
+static const double TUBE_BLURRED = 0.035, COARSE = 0.03, BLUR = 0.08;
 /* Where the smallest balls find the longest tubes, the share of those that lies on a ring, at least (each at its best): 0.35 and more
  * over 90 clouds with tubes, 0.2 and less where balls of a few points on noisy sheets look long. */
 static const double TUBE_RING = 0.22;
+/* With noise of such a share of the size petioles, whose radius is about as much, show no rings, but are no longer than so many
+ * times TUBE_LEAST. (Rosettes whose noise is as wide as their petioles: 0.0065 to 0.012, tubes of 0.2; heads of 2500 to 5000 points
+ * and 1.2 mm of noise, whose sheets look long: 0.0044 to 0.0058. Of 12 single leaves with more each stays one, as its tubes part
+ * nothing.) */
+static const double RINGLESS = 0.008, RINGLESS_LONGEST = 2;
 static const double RING_LOW = 0.75, RING_HIGH = 1.3; /* distance from the ball's centroid over the tube's radius */
 enum { SPACING_POINTS = 25000, SERIES_MAXIMUM = 24, SMALLEST_COUNT = 20 };
 
@@ -165,10 +170,13 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;
     out.has_tubes = is_round && peak >= TUBE_LEAST * out.size;
-    /* Tubes as short as a rosette's may not show round; long ones would. */
+    /* Tubes as short as a rosette's may not show round; long ones would, but in much noise. */
     out.is_blurred = series[0].radius > COARSE * out.size && series[0].flat_noise > BLUR * series[0].radius;
     const double doubtful = out.is_blurred ? TUBE_BLURRED : TUBE_DOUBTFUL;
-    out.is_doubtful = !out.has_tubes && peak >= doubtful * out.size && (is_round || peak < TUBE_LEAST * out.size);
+    const bool may_be_round = is_round || peak < TUBE_LEAST * out.size;
+    const bool is_ringless =
+        out.is_blurred && out.noise > RINGLESS * out.size && peak < RINGLESS_LONGEST * TUBE_LEAST * out.size;
+    out.is_doubtful = !out.has_tubes && peak >= doubtful * out.size && (may_be_round || is_ringless);
     out.rises = trials > 1 && series[trials - 1].tube_length >= peak;
     if (status == PLM_OK) *scale = out;
     return status;

@@ -103,15 +103,15 @@ static bool may_have_stem(plm_habit habit)
     return habit != PLM_HABIT_ROSETTE && habit != PLM_HABIT_HEAD && habit != PLM_HABIT_SINGLE_LEAF;
 }
 
-static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_segment_options *options, bool try_tubes,
+static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_segment_options *options, plm_tubes tubes,
                               plm_sketch *sketch, plm_error *error)
 {
     plm_sketch_free(sketch);
-    plm_status status = plm_sketch_make(xyz, count, options->point_budget, try_tubes, sketch, error);
+    plm_status status = plm_sketch_make(xyz, count, options->point_budget, tubes, sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(sketch, error);
     /* What tubes a blurred plant shows are petioles of a rosette, or none. */
-    const bool stemless = try_tubes && sketch->scale.is_doubtful && sketch->scale.is_blurred;
+    const bool stemless = tubes != PLM_TUBES_SURE && sketch->scale.is_doubtful && sketch->scale.is_blurred;
     if (status == PLM_OK && may_have_stem(options->habit) && !stemless) status = plm_sketch_stem(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, options->habit, error);
@@ -191,13 +191,15 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
         status = plm_fail(error, PLM_E_DEGENERATE, "the cloud has no points of a plant");
         goto done;
     }
-    const bool may_be_rosette = options->habit == PLM_HABIT_UNKNOWN || options->habit == PLM_HABIT_ROSETTE;
-    status = find_organs((const float(*)[3])xyz, count, options, may_be_rosette, &sketch, error);
-    if (status == PLM_OK && may_be_rosette && sketch.scale.is_doubtful) {
+    plm_tubes tubes = PLM_TUBES_SURE;
+    if (options->habit == PLM_HABIT_UNKNOWN) tubes = PLM_TUBES_DOUBTFUL;
+    if (options->habit == PLM_HABIT_ROSETTE) tubes = PLM_TUBES_ANY; /* the user saw petioles */
+    status = find_organs((const float(*)[3])xyz, count, options, tubes, &sketch, error);
+    if (status == PLM_OK && tubes != PLM_TUBES_SURE && sketch.scale.is_doubtful) {
         bool rosette;
         status = is_rosette(&sketch, &rosette, error);
         if (status == PLM_OK && !rosette)
-            status = find_organs((const float(*)[3])xyz, count, options, false, &sketch, error);
+            status = find_organs((const float(*)[3])xyz, count, options, PLM_TUBES_SURE, &sketch, error);
     }
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
     if (status != PLM_OK) goto done;

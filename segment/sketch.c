@@ -66,7 +66,7 @@ plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, plm_error
     return plm_graph_join(graph, sketch->working.cell, JOIN_RADII * sketch->scale.radius, error);
 }
 
-plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, bool try_tubes, plm_sketch *out,
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_tubes tubes, plm_sketch *out,
                            plm_error *error)
 {
     plm_sketch sketch = {0};
@@ -75,7 +75,9 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
     if (status == PLM_OK) status = plm_thin(xyz, count, cell, &sketch.base, error);
     const float(*base)[3] = (const float(*)[3])sketch.base.xyz;
     if (status == PLM_OK) status = plm_find_scale(base, sketch.base.count, &sketch.scale, error);
-    if (try_tubes && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
+    const bool any = tubes == PLM_TUBES_ANY && sketch.scale.tube_length > 0 && sketch.scale.stem_radius > 0;
+    if (any && !sketch.scale.has_tubes) sketch.scale.is_doubtful = true;
+    if (tubes != PLM_TUBES_SURE && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
     if (status == PLM_OK) {
         cell = fmax(sketch.scale.radius / WORKING_CELLS, sketch.scale.spacing);
         status = plm_thin(base, sketch.base.count, cell, &sketch.working, error);

@@ -37,10 +37,12 @@ typedef struct plm_sketch {
     uint32_t *leaf_flags;
 } plm_sketch;
 
-/** Thins the plant, finds its scale and the graph, and tells tubes from blades.
- * try_tubes: doubtful tubes count as tubes. */
-plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, bool try_tubes, plm_sketch *sketch,
-                           plm_error *error);
+/** Which tubes count as tubes: sure ones, doubtful ones as well, or whatever looks like one (is_doubtful, then). */
+typedef enum plm_tubes { PLM_TUBES_SURE, PLM_TUBES_DOUBTFUL, PLM_TUBES_ANY } plm_tubes;
+
+/** Thins the plant, finds its scale and the graph, and tells tubes from blades. scale.is_doubtful: they are not sure. */
+plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_tubes tubes,
+                           plm_sketch *sketch, plm_error *error);
 
 /** A graph over the working points whose edges are at most so many cells long. The caller's: plm_graph_free. */
 plm_status plm_sketch_link(const plm_sketch *sketch, double edge_cells, plm_graph *graph, plm_error *error);

@@ -5,7 +5,9 @@
 #include "support/label_score.h"
 #include "support/virtual_plant.h"
 
-#define DEPTH_CAMERA .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = 5e-4, .views = 12, .outliers = 0.005
+#define DEPTH_CAMERA_OF(sigma)                                                                                         \
+    .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = sigma, .views = 12, .outliers = 0.005
+#define DEPTH_CAMERA DEPTH_CAMERA_OF(5e-4)
 
 /* axis: intersection over union of stem and petioles. The plant is the caller's. */
 static virtual_plant check(const plm_scan_options *options, double f1, double axis)
@@ -57,6 +59,40 @@ static void short_petioles_of_few_points_are_tubes(void **unused)
     virtual_plant_free(&made);
 }
 
+/* Noise of a petiole's width leaves no rings and hardly any tubes. */
+static void petioles_no_wider_than_the_noise_are_tubes(void **unused)
+{
+    (void)unused;
+    virtual_plant made =
+        check(&(plm_scan_options){DEPTH_CAMERA_OF(5.983e-4), .seed = 30005, .image_width = 1480}, 0.9, 0.5);
+    virtual_plant_free(&made);
+    made = check(&(plm_scan_options){DEPTH_CAMERA_OF(9.6e-4), .seed = 32004, .image_width = 1110}, 0.75, 0.3);
+    virtual_plant_free(&made);
+}
+
+/* With noise of 0.9 mm on a rosette of 60 mm nothing tells it from a single leaf, but the user does. */
+static void who_says_rosette_gets_its_leaves(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    const plm_scan_options options = {DEPTH_CAMERA_OF(1.4e-3), .seed = 30005, .image_width = 1110};
+    virtual_plant made = virtual_plant_make("arabidopsis", 0, &options);
+    bool *keep = calloc(made.found.count, sizeof *keep);
+    assert_non_null(keep);
+    for (size_t i = 0; i < made.found.count; i++) keep[i] = made.found.label[i] != PLM_LABEL_OTHER;
+    plm_segmentation found;
+    const plm_segment_options rosette = {.habit = PLM_HABIT_ROSETTE};
+    assert_ok(plm_segment(&made.scan.cloud, NULL, keep, &rosette, &found, &error));
+    print_message("%zu leaves, %zu of them when asked for a rosette, and %zu petioles\n", made.plant.leaf_count,
+                  found.leaf_count, found.petiole_count);
+    assert_int_equal(found.habit, PLM_HABIT_ROSETTE);
+    assert_in_range(found.leaf_count, 8, made.plant.leaf_count);
+    assert_true(found.petiole_count >= 8);
+    plm_segmentation_free(&found);
+    free(keep);
+    virtual_plant_free(&made);
+}
+
 static void leaves_part_where_one_blade_begins_before_the_other(void **unused)
 {
     (void)unused;
@@ -82,6 +118,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_way_along_a_steep_leaf_is_no_stem),
         cmocka_unit_test(short_petioles_of_few_points_are_tubes),
+        cmocka_unit_test(petioles_no_wider_than_the_noise_are_tubes),
+        cmocka_unit_test(who_says_rosette_gets_its_leaves),
         cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
         cmocka_unit_test(narrow_blades_begin_where_wide_ones_do),
     };
