@@ -5,7 +5,6 @@
  * the width is told to about a step. */
 #include "segment/junction.h"
 
-#include "cloud/linear.h"
 #include "segment/rachis_line.h"
 #include "segment/scratch.h"
 
@@ -29,12 +28,13 @@ static const double LEAST_LONG = 0.05; /* the same beyond a long clear stretch *
 static const double ENOUGH = 25, NOISY = 0.25;
 /* Steps of a compound leaf, in links: about what a point takes of a sheet. In shorter ones stations fall apart at gaps. */
 static const double STEP_LINKS = 0.65;
-static const double WIDEST = 1.15; /* tubes of the narrowest of the larger leaves: a compound leaf's tube is no wider */
-static const double FILLED = 0.4;  /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
-static const double BLADE = 2;     /* widths of the tube that the last leaflet reaches at least */
-static const double FOOT = 0.35;   /* in R: stations before are cut by the stem */
-static const double SUBSTEP = 0.1; /* of a step, in the search for the change */
-static const double NARROW = 0.07; /* quantile of the widths of a rosette's leaf that is its tube's */
+static const double WIDEST = 1.15;     /* tubes of the narrowest of the larger leaves: a leaf's tube is no wider */
+static const double THINNEST = 0.3;    /* of the stem's radius: tubes are hardly narrower */
+static const double FILLED = 0.4;      /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
+static const double BLADE = 2;         /* widths of the tube that the last leaflet reaches at least */
+static const double FOOT = 0.35;       /* in R: stations before are cut by the stem */
+static const double SUBSTEP = 0.1;     /* of a step, in the search for the change */
+static const double NARROW = 0.07;     /* quantile of the widths of a rosette's leaf that is its tube's */
 static const double LEAST_BLADE = 0.2; /* share of a simple leaf's points beyond its junction: less is none */
 enum {
     CLEAR = 2,        /* stations at which nothing but a tube lies about the line: a rachis, ... */
@@ -61,7 +61,7 @@ typedef struct work {
     uint32_t *trail; /* from the leaf's farthest point to the foot */
     size_t trail_count;
     bool *clear, *beside; /* of each station: see plm_rachis_clear */
-    float *widest;        /* of compound plants: how wide each leaf's tube is at most; else NULL */
+    float *widest; /* of plants with a stem: how wide each leaf's tube is at most, told by larger ones; else NULL */
     uint32_t stamp;
 } work;
 
@@ -121,40 +121,6 @@ static void flood(work *w, double low, double high, const uint32_t *trail, size_
 double plm_leaf_wide(const plm_leaf_way *way)
 {
     return WIDE * way->tube;
-}
-
-void plm_station_measure(const plm_sketch *sketch, const uint32_t *row, size_t count, plm_station *station)
-{
-    double moment[6] = {0}, value[3], vector[3][3], sum[3] = {0}, tubes = 0;
-    *station = (plm_station){.count = (uint32_t)count};
-    if (!count) return;
-    for (size_t k = 0; k < count; k++) {
-        for (int a = 0; a < 3; a++) sum[a] += sketch->working.xyz[row[k]][a];
-        tubes += sketch->is_tube[row[k]];
-    }
-    for (int a = 0; a < 3; a++) station->middle[a] = sum[a] / (double)count;
-    station->tube = tubes / (double)count;
-    for (size_t k = 0; k < count; k++) {
-        double d[3];
-        for (int a = 0; a < 3; a++) d[a] = sketch->working.xyz[row[k]][a] - station->middle[a];
-        for (int a = 0, m = 0; a < 3; a++)
-            for (int c = a; c < 3; c++) moment[m++] += d[a] * d[c] / (double)count;
-    }
-    plm_eigen3(moment, value, vector);
-    station->width = sqrt(fmax(value[0], 0));
-}
-
-double plm_leaf_typical_link(const plm_leaf_way *way, const bool *among, float *value)
-{
-    const plm_graph *graph = &way->sketch->graph;
-    size_t count = 0;
-    for (size_t k = 0; k < way->count; k++) { /* of each point one, in turn */
-        const uint32_t i = way->order[k], links = graph->first[i + 1] - graph->first[i];
-        if (!among[i] || !links) continue;
-        const uint32_t j = graph->edge[graph->first[i] + (uint32_t)k % links];
-        if (among[j]) value[count++] = (float)plm_graph_length(graph, i, j);
-    }
-    return count ? plm_quantile(value, count, 0.5) : 0;
 }
 
 /* The station of the marked points of order[begin, end). */
@@ -235,6 +201,23 @@ size_t plm_leaf_only_split(const plm_leaf_way *way, size_t first)
     return best;
 }
 
+/* Whether the noise is wide against the tube. */
+static bool is_noisy(const plm_leaf_way *way)
+{
+    return way->sketch->scale.noise > NOISY * way->tube;
+}
+
+/* The first narrow station beyond the foot, about which in noise sides of the stem and of other feet are called tube. first: it
+ * is not noisy, or all is wide there. */
+static size_t beyond_foot(const plm_leaf_way *way, size_t first)
+{
+    const size_t reach = (size_t)(way->sketch->scale.radius / way->step);
+    const size_t most = reach < way->station_count ? reach : way->station_count;
+    size_t k = first;
+    while (k < most && (way->station[k].count < 2 || way->station[k].width > plm_leaf_wide(way))) k++;
+    return is_noisy(way) && k < most ? k : first;
+}
+
 /* Typical number of points of the tube's stations; 0 where there are none. Wide ones hold leaflets. */
 static double tube_count(const work *w, size_t first)
 {
@@ -279,8 +262,7 @@ static bool is_rachis(const work *w, size_t begin, size_t split)
     size_t clear = 0;
     for (size_t k = begin; k < split; k++) tubes += way->station[k].tube, clear += w->clear[k];
     const bool filled = run_points(way, begin, split) >= FILLED * way->tube_points * run;
-    const bool noisy = w->sketch->scale.noise > NOISY * way->tube;
-    if (noisy && tubes <= TUBE_SHARE * run && run_points(way, begin, split) < ENOUGH * WINDOW) return false;
+    if (is_noisy(way) && tubes <= TUBE_SHARE * run && run_points(way, begin, split) < ENOUGH * WINDOW) return false;
     if (clear >= CLEAR && filled) return share_beyond(way, split) > (clear >= SURE ? LEAST_SURE : LEAST_CLEAR);
     if (run < WINDOW || !plm_leaf_is_full(way, begin, split)) return false;
     if (tubes > TUBE_SHARE * run) return true;
@@ -404,8 +386,8 @@ static plm_status measure_leaf(work *w, int32_t leaf, plm_error *error)
     return status;
 }
 
-/* The most that each leaf's tube can be wide: petioles of smaller leaves are no thicker, but in noise balls call their leaflets
- * tubes as well. */
+/* The most that each leaf's tube can be wide: petioles of smaller leaves are no thicker, but in noise balls call their leaflets,
+ * or narrow blades, tubes as well. */
 static plm_status bound_tubes(work *w, plm_error *error)
 {
     const size_t count = w->sketch->leaf_count;
@@ -431,21 +413,30 @@ static plm_status bound_tubes(work *w, plm_error *error)
     return status;
 }
 
+/* Clean tubes of simple leaves tell their own width. */
+static bool larger_leaves_tell(const plm_sketch *sketch)
+{
+    const bool may_be_noisy = sketch->scale.noise > NOISY * THINNEST * sketch->scale.stem_radius;
+    return sketch->habit == PLM_HABIT_COMPOUND || (sketch->habit == PLM_HABIT_SIMPLE && may_be_noisy);
+}
+
 static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
     plm_status status = measure_leaf(w, leaf, error);
-    if (status == PLM_OK && way->count && w->widest && way->tube > w->widest[leaf]) {
+    const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND,
+               bounded = w->widest && (compound || w->sketch->scale.noise > NOISY * w->widest[leaf]);
+    if (status == PLM_OK && way->count && bounded && way->tube > w->widest[leaf]) {
         way->tube = w->widest[leaf];
         way->tube_points = tube_count(w, w->first);
     }
-    const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
     if (status == PLM_OK && way->count && compound)
         status = plm_rachis_clear(way, w->trail, w->trail_count, w->clear, w->beside, error);
     if (status != PLM_OK || !way->count) return status;
-    const size_t split = compound ? compound_split(w, w->first) : plm_leaf_only_split(way, w->first);
-    if (split <= w->first || split >= way->station_count) return PLM_OK;
-    way->junction = plm_leaf_change(way, w->first, split);
+    const size_t first = compound ? w->first : beyond_foot(way, w->first);
+    const size_t split = compound ? compound_split(w, first) : plm_leaf_only_split(way, first);
+    if (split <= first || split >= way->station_count) return PLM_OK;
+    way->junction = plm_leaf_change(way, first, split);
     if (!compound && way->distance[way->order[(size_t)((1 - LEAST_BLADE) * (double)way->count)]] < way->junction)
         return PLM_OK;
     if (compound)
@@ -476,7 +467,7 @@ plm_status plm_sketch_junctions(plm_sketch *sketch, const plm_side_groups *group
     w.beside = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.beside);
     w.way.station = plm_scratch_take(&w.scratch, STATIONS_MOST, sizeof *w.way.station);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
-    if (status == PLM_OK && sketch->habit == PLM_HABIT_COMPOUND) status = bound_tubes(&w, error);
+    if (status == PLM_OK && larger_leaves_tell(sketch)) status = bound_tubes(&w, error);
     for (size_t leaf = 0; leaf < sketch->leaf_count && status == PLM_OK; leaf++)
         status = set_leaf(&w, (int32_t)leaf, error);
     plm_scratch_free(&w.scratch, NULL);

@@ -16,14 +16,6 @@ static double gap_squared(const float a[3], const double b[3])
     return sum;
 }
 
-const plm_station *plm_leaf_station(const plm_leaf_way *way, double distance)
-{
-    size_t k = (size_t)(distance / way->step + 0.5);
-    if (k >= way->station_count) k = way->station_count - 1;
-    while (k > 0 && !way->station[k].count) k--;
-    return &way->station[k];
-}
-
 /* The petiole's line at its foot, from the first stations that are as narrow as a tube: what lies before them, where the
  * stem's remains lie as near, is the petiole's only along this line. begin: distance at which the line begins. false where
  * there are too few. */
