@@ -98,14 +98,57 @@ static double ends_error(const plm_organ *leaf)
     return most;
 }
 
+/* Noise as wide as the blade hides how the leaf is turned about its long axis, as the points may lie farther off its plane than
+ * across it. Leaves with petioles are level across: of 594 virtual ones the SD of that turn is 6 to 22 degrees by kind, of the 17
+ * shorter than 5 mm 6. What of a radian noise hides goes with the square of its variance over the middle moment: half of the
+ * weight is the level's where the noise is a seventh of a flat blade's width, a fortieth where it is a tenth. */
+static const double level_sd = 12 * PLM_PI / 180, hidden = 4;
+
+static bool has_petioles(const plm_scene *scene)
+{
+    bool any = false;
+    for (size_t k = 0; k < scene->organ_count; k++) any |= scene->organ[k].label == PLM_LABEL_PETIOLE;
+    return any;
+}
+
+/* The likeliest normal, given what noise hides and that leaves are level across. error: of its tilt; the weight of being level. */
+static double level_normal(const plm_leaf_surface *surface, double normal[3], double *error)
+{
+    const plm_plane *plane = &surface->plane;
+    const double *across = plane->axis[1];
+    double weight = 0;
+    if (plane->eigenvalue[1] > 0) {
+        const double ratio = surface->noise * surface->noise / plane->eigenvalue[1];
+        const double unknown = fmin(hidden * ratio * ratio, PLM_PI / 2);
+        weight = unknown * unknown / (unknown * unknown + level_sd * level_sd);
+    }
+    const double slope = plane->normal[2] < 0 ? -across[2] : across[2];
+    const double turn = weight * atan2(slope, fabs(plane->normal[2]));
+    *error = 0;
+    for (int k = 0; k < 3; k++) normal[k] = cos(turn) * plane->normal[k] + sin(turn) * across[k];
+    for (int side = -1; side <= 1; side += 2) {
+        const double to = turn + side * sqrt(weight) * level_sd;
+        double turned[3];
+        for (int k = 0; k < 3; k++) turned[k] = cos(to) * plane->normal[k] + sin(to) * across[k];
+        *error = fmax(*error, fabs(tilt_of(turned) - tilt_of(normal)));
+    }
+    return weight;
+}
+
 plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out,
                                       plm_error *error)
 {
-    (void)scene, (void)error;
+    (void)error;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
-    out->value = tilt_of(leaf->surface.plane.normal);
-    out->std_error = hypot(hypot(leaf->surface.plane_std_error, border_error(leaf)), ends_error(leaf));
-    out->method = "area-weighted plane";
+    const plm_leaf_surface *surface = &leaf->surface;
+    double normal[3], weight = 0, turn_error = 0;
+    for (int k = 0; k < 3; k++) normal[k] = surface->plane.normal[k];
+    if (has_petioles(scene)) weight = level_normal(surface, normal, &turn_error);
+    out->value = tilt_of(normal);
+    out->std_error =
+        hypot(hypot(surface->plane_std_error, border_error(leaf)), /* ends turn what is not taken as level */
+              hypot((1 - weight) * ends_error(leaf), turn_error));
+    out->method = weight > 0.5 ? "area-weighted plane, taken as level across" : "area-weighted plane";
     return PLM_OK;
 }
 
