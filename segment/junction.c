@@ -29,6 +29,7 @@ static const double ENOUGH = 25, NOISY = 0.25;
 /* Steps of a compound leaf, in links: about what a point takes of a sheet. In shorter ones stations fall apart at gaps. */
 static const double STEP_LINKS = 0.65;
 static const double WIDEST = 1.15;     /* tubes of the narrowest of the larger leaves: a leaf's tube is no wider */
+static const double FAR_WIDER = 1.3;   /* than that, in noise: what a simple leaf shows is its blade */
 static const double THINNEST = 0.3;    /* of the stem's radius: tubes are hardly narrower */
 static const double FILLED = 0.4;      /* as FULL: with less, where balls find no tube, it is a thinly scanned blade */
 static const double BLADE = 2;         /* widths of the tube that the last leaflet reaches at least */
@@ -420,13 +421,20 @@ static bool larger_leaves_tell(const plm_sketch *sketch)
     return sketch->habit == PLM_HABIT_COMPOUND || (sketch->habit == PLM_HABIT_SIMPLE && may_be_noisy);
 }
 
+/* Whether larger leaves tell better how wide a leaf's tube is than its own. */
+static bool is_bounded(const work *w, int32_t leaf, bool compound)
+{
+    const double widest = w->widest[leaf];
+    if (compound) return w->way.tube > widest;
+    return w->way.tube > FAR_WIDER * widest && w->sketch->scale.noise > NOISY * widest;
+}
+
 static plm_status set_leaf(work *w, int32_t leaf, plm_error *error)
 {
     plm_leaf_way *way = &w->way;
     plm_status status = measure_leaf(w, leaf, error);
-    const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND,
-               bounded = w->widest && (compound || w->sketch->scale.noise > NOISY * w->widest[leaf]);
-    if (status == PLM_OK && way->count && bounded && way->tube > w->widest[leaf]) {
+    const bool compound = w->sketch->habit == PLM_HABIT_COMPOUND;
+    if (status == PLM_OK && way->count && w->widest && is_bounded(w, leaf, compound)) {
         way->tube = w->widest[leaf];
         way->tube_points = tube_count(w, w->first);
     }
