@@ -98,11 +98,11 @@ static double ends_error(const plm_organ *leaf)
     return most;
 }
 
-/* Noise as wide as the blade hides how the leaf is turned about its long axis, as the points may lie farther off its plane than
+/* Noise as wide as the blade hides how the leaf is turned about its length, as the points may lie farther off its plane than
  * across it. Leaves with petioles are level across: of 594 virtual ones the SD of that turn is 6 to 22 degrees by kind, of the 17
- * shorter than 5 mm 6. What of a radian noise hides goes with the square of its variance over the middle moment: half of the
- * weight is the level's where the noise is a seventh of a flat blade's width, a fortieth where it is a tenth. */
-static const double level_sd = 12 * PLM_PI / 180, hidden = 4;
+ * shorter than 5 mm 6. Until noise is about as wide it hides little: what of a radian is unknown goes with the fourth power of
+ * its variance over the moment across (half of the weight is the level's at 0.4: noise of a fifth of a flat blade's width). */
+static const double level_sd = 12 * PLM_PI / 180, hidden = 8;
 
 static bool has_petioles(const plm_scene *scene)
 {
@@ -111,25 +111,31 @@ static bool has_petioles(const plm_scene *scene)
     return any;
 }
 
-/* The likeliest normal, given what noise hides and that leaves are level across. error: of its tilt; the weight of being level. */
-static double level_normal(const plm_leaf_surface *surface, double normal[3], double *error)
+/* The likeliest normal, given what noise hides of the turn about the way from base to tip, and that leaves are level across it (a
+ * round leaf's longest axis may lie across). error: of its tilt. Gives the weight of being level. */
+static double level_normal(const plm_leaf_surface *surface, const double way[3], double normal[3], double *error)
 {
     const plm_plane *plane = &surface->plane;
-    const double *across = plane->axis[1];
-    double weight = 0;
-    if (plane->eigenvalue[1] > 0) {
-        const double ratio = surface->noise * surface->noise / plane->eigenvalue[1];
-        const double unknown = fmin(hidden * ratio * ratio, PLM_PI / 2);
+    double across[3], upright[3], moment = 0, weight = 0;
+    const double lean = plm_dot(plane->normal, way);
+    for (int k = 0; k < 3; k++) upright[k] = plane->normal[k] - lean * way[k];
+    plm_cross(way, upright, across);
+    for (int k = 0; k < 3; k++)
+        moment += plane->eigenvalue[k] * pow(plm_dot(k < 2 ? plane->axis[k] : plane->normal, across), 2);
+    moment /= plm_dot(across, across); /* an across of no length: not a number, which hides nothing */
+    if (moment > 0) {
+        const double ratio = surface->noise * surface->noise / moment;
+        const double unknown = fmin(hidden * pow(ratio, 4), PLM_PI / 2);
         weight = unknown * unknown / (unknown * unknown + level_sd * level_sd);
     }
-    const double slope = plane->normal[2] < 0 ? -across[2] : across[2];
-    const double turn = weight * atan2(slope, fabs(plane->normal[2]));
+    const double slope = upright[2] < 0 ? -across[2] : across[2];
+    const double turn = weight * atan2(slope, fabs(upright[2]));
     *error = 0;
-    for (int k = 0; k < 3; k++) normal[k] = cos(turn) * plane->normal[k] + sin(turn) * across[k];
+    for (int k = 0; k < 3; k++) normal[k] = lean * way[k] + cos(turn) * upright[k] + sin(turn) * across[k];
     for (int side = -1; side <= 1; side += 2) {
         const double to = turn + side * sqrt(weight) * level_sd;
         double turned[3];
-        for (int k = 0; k < 3; k++) turned[k] = cos(to) * plane->normal[k] + sin(to) * across[k];
+        for (int k = 0; k < 3; k++) turned[k] = lean * way[k] + cos(to) * upright[k] + sin(to) * across[k];
         *error = fmax(*error, fabs(tilt_of(turned) - tilt_of(normal)));
     }
     return weight;
@@ -143,7 +149,11 @@ plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *l
     const plm_leaf_surface *surface = &leaf->surface;
     double normal[3], weight = 0, turn_error = 0;
     for (int k = 0; k < 3; k++) normal[k] = surface->plane.normal[k];
-    if (has_petioles(scene)) weight = level_normal(surface, normal, &turn_error);
+    if (leaf->midrib && has_petioles(scene)) {
+        double way[3];
+        for (int k = 0; k < 3; k++) way[k] = leaf->midrib->tip[k] - leaf->midrib->base[k];
+        if (plm_normalise(way)) weight = level_normal(surface, way, normal, &turn_error);
+    }
     out->value = tilt_of(normal);
     out->std_error =
         hypot(hypot(surface->plane_std_error, border_error(leaf)), /* ends turn what is not taken as level */
