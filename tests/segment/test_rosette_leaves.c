@@ -68,6 +68,8 @@ static void petioles_no_wider_than_the_noise_are_tubes(void **unused)
     virtual_plant_free(&made);
     made = check(&(plm_scan_options){DEPTH_CAMERA_OF(9.6e-4), .seed = 32004, .image_width = 1110}, 0.75, 0.3);
     virtual_plant_free(&made);
+    made = check(&(plm_scan_options){DEPTH_CAMERA_OF(1.042e-3), .seed = 39005, .image_width = 1480}, 0.3, 0.2);
+    virtual_plant_free(&made);
 }
 
 /* With noise of 0.9 mm on a rosette of 60 mm nothing tells it from a single leaf, but the user does. */
