@@ -122,9 +122,9 @@ static double level_normal(const plm_leaf_surface *surface, const double way[3],
     plm_cross(way, upright, across);
     for (int k = 0; k < 3; k++)
         moment += plane->eigenvalue[k] * pow(plm_dot(k < 2 ? plane->axis[k] : plane->normal, across), 2);
-    moment /= plm_dot(across, across); /* an across of no length: not a number, which hides nothing */
+    const double squared = plm_dot(across, across);
     if (moment > 0) {
-        const double ratio = surface->noise * surface->noise / moment;
+        const double ratio = surface->noise * surface->noise * squared / moment;
         const double unknown = fmin(hidden * pow(ratio, 4), PLM_PI / 2);
         weight = unknown * unknown / (unknown * unknown + level_sd * level_sd);
     }
@@ -152,7 +152,7 @@ plm_status plm_trait_leaf_inclination(const plm_scene *scene, const plm_organ *l
     if (leaf->midrib && has_petioles(scene)) {
         double way[3];
         for (int k = 0; k < 3; k++) way[k] = leaf->midrib->tip[k] - leaf->midrib->base[k];
-        if (plm_normalise(way)) weight = level_normal(surface, way, normal, &turn_error);
+        if (plm_normalise(way) > 0) weight = level_normal(surface, way, normal, &turn_error);
     }
     out->value = tilt_of(normal);
     out->std_error =
