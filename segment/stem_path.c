@@ -16,8 +16,8 @@ static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at m
 static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
 static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
 static const double FOOT_SHARE = 0.2;         /* of the path: the foot, which is bare */
-static const double RISE_LEAST = 0.2;         /* of the size: a plant that rises less has no stem */
-static const double PIECE_SHARE = 0.2;        /* of the longest piece of tube: the base is on such a one, ... */
+static const double RISE_LEAST = 0.2, RISE_ASKED = 0.15; /* of the size: less is no stem; asked for by the user */
+static const double PIECE_SHARE = 0.2;                /* of the longest piece of tube: the base is on such a one, ... */
 static const double PIECE_LEAST = 2, PIECE_GAP = 2.5; /* ... or on an upright one of this length so far below, in R */
 static const double STEP = 0.25;                      /* nodes, in R */
 static const double WINDOW = 1;                       /* half window of centring and of the radius, in R */
@@ -450,7 +450,8 @@ plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t b
 {
     plm_stem_path stem = {0};
     size_t length = 0;
-    if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < RISE_LEAST * sketch->scale.size) return PLM_OK;
+    const double least = sketch->habit == PLM_HABIT_UNKNOWN ? RISE_LEAST : RISE_ASKED;
+    if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < least * sketch->scale.size) return PLM_OK;
     for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) length++;
     uint32_t *chain = plm_alloc(length, sizeof *chain, error);
     if (!chain) return PLM_E_MEMORY;

@@ -8,6 +8,7 @@
 #include "support/virtual_plant.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* All leaves are found, and so much of the stem. */
@@ -196,6 +197,38 @@ static void only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin(void **unused)
     assert_true(hairpin_of(DOWN, DOWN, UP) == 0);    /* ... or up */
 }
 
+/* A cucumber with a stem of 79 mm among leaves 350 mm wide is taken for a rosette, but the user knows better. */
+static void who_says_simple_gets_a_low_stem(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    const plm_scan_options options = {.scanner = PLM_SCANNER_RGBD,
+                                      .seed = 39004,
+                                      .points = 45000,
+                                      .noise = 5.207e-4,
+                                      .outliers = 0.005,
+                                      .image_width = 1110};
+    virtual_plant made = virtual_plant_make("cucumber", 0, &options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    bool *keep = calloc(cloud->count, sizeof *keep);
+    assert_non_null(keep);
+    for (size_t i = 0; i < cloud->count; i++) keep[i] = made.found.label[i] != PLM_LABEL_OTHER;
+    plm_segmentation found;
+    assert_ok(plm_segment(cloud, NULL, keep, &(plm_segment_options){.habit = PLM_HABIT_SIMPLE}, &found, &error));
+    size_t stem = 0, seen = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        stem += cloud->label[i] == PLM_LABEL_STEM;
+        seen += cloud->label[i] == PLM_LABEL_STEM && found.label[i] == PLM_LABEL_STEM;
+    }
+    print_message("%zu of %zu points of the stem, %zu leaves of %zu\n", seen, stem, found.leaf_count,
+                  made.plant.leaf_count);
+    assert_true(10 * seen > 9 * stem);
+    assert_int_equal(found.leaf_count, made.plant.leaf_count);
+    plm_segmentation_free(&found);
+    free(keep);
+    virtual_plant_free(&made);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -207,6 +240,7 @@ int main(void)
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
+        cmocka_unit_test(who_says_simple_gets_a_low_stem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
