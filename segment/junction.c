@@ -62,7 +62,7 @@ typedef struct work {
     uint32_t *trail; /* from the leaf's farthest point to the foot */
     size_t trail_count;
     bool *clear, *beside; /* of each station: see plm_rachis_clear */
-    float *widest; /* of plants with a stem: how wide each leaf's tube is at most, told by larger ones; else NULL */
+    float *widest;        /* how wide each leaf's tube is at most, told by larger ones; NULL: see larger_leaves_tell */
     uint32_t stamp;
 } work;
 

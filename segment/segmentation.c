@@ -108,7 +108,7 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
 {
     plm_sketch_free(sketch);
     plm_status status = plm_sketch_make(xyz, count, options->point_budget, tubes, sketch, error);
-    sketch->habit = options->habit;
+    sketch->asked = options->habit;
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(sketch, error);
     /* What tubes a blurred plant shows are petioles of a rosette, or none. */

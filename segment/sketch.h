@@ -29,7 +29,8 @@ typedef struct plm_sketch {
     bool *is_tube;
     bool *is_stem; /**< is_tube, and on the main stem */
     plm_stem_path stem;
-    plm_habit habit;  /**< what the user says, until plm_sketch_leaves has found it */
+    plm_habit asked; /**< what the user says it is */
+    plm_habit habit;
     int32_t *group;   /**< side group (all that hangs on one foot at the stem), -1: stem */
     int32_t *leaf;    /**< leaf that a blade or petiole point belongs to, -1 */
     int32_t *leaflet; /**< component of blade within the leaf, -1 */

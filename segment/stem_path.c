@@ -450,7 +450,7 @@ plm_status plm_stem_trace(plm_sketch *sketch, const uint32_t *parent, uint32_t b
 {
     plm_stem_path stem = {0};
     size_t length = 0;
-    const double least = sketch->habit == PLM_HABIT_UNKNOWN ? RISE_LEAST : RISE_ASKED;
+    const double least = sketch->asked == PLM_HABIT_UNKNOWN ? RISE_LEAST : RISE_ASKED;
     if (sketch->working.xyz[top][2] - sketch->working.xyz[base][2] < least * sketch->scale.size) return PLM_OK;
     for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) length++;
     uint32_t *chain = plm_alloc(length, sizeof *chain, error);
