@@ -231,9 +231,8 @@ static const plm_trait traits[] = {
      .unit = PLM_DEGREE,
      .needs = PLM_NEEDS_SURFACE | PLM_NEEDS_ZENITH,
      .measure = plm_trait_leaf_inclination,
-     .definition =
-         "angle between the leaf's area-weighted best-fit plane normal and zenith, 0 to 90; where the noise is as "
-         "wide as the blade, taken as level across",
+     .definition = "angle between the leaf's area-weighted best-fit plane normal and zenith, 0 to 90; of plants with "
+                   "petioles, where the noise is a fifth of the blade's width and more, taken as level across",
      .source = "seedling paper, Eq. 24",
      .ontology = "TO:0000206"},
     {.name = "facet_inclination_mean",
