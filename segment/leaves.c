@@ -191,7 +191,7 @@ static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
     return status;
 }
 
-plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error)
+plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error)
 {
     plm_side_groups groups = {0};
     plm_status status = plm_side_groups_find(sketch, 1, &groups, error);
@@ -200,8 +200,8 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *err
         if (status == PLM_OK) status = plm_side_groups_young(sketch, &groups, error);
     }
     if (status == PLM_OK) {
-        sketch->habit = habit;
-        if (habit == PLM_HABIT_UNKNOWN) status = plm_habit_guess(sketch, &groups, &sketch->habit, error);
+        sketch->habit = sketch->asked;
+        if (sketch->asked == PLM_HABIT_UNKNOWN) status = plm_habit_guess(sketch, &groups, &sketch->habit, error);
     }
     if (status == PLM_OK) {
         /* Where the stem's line ended early, its rest is one foot of several petioles. */

@@ -46,12 +46,12 @@ static plm_status is_leaf_way(plm_sketch *sketch, bool *answer, plm_error *error
     return status;
 }
 
-plm_status plm_stem_drop_false(plm_sketch *sketch, plm_habit habit, plm_error *error)
+plm_status plm_stem_drop_false(plm_sketch *sketch, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
     bool is_none = stem->node[stem->count - 1][2] - stem->node[0][2] < RISE_LEFT * sketch->scale.size;
     plm_status status = PLM_OK;
-    if (!is_none && habit == PLM_HABIT_UNKNOWN) status = is_leaf_way(sketch, &is_none, error);
+    if (!is_none && sketch->asked == PLM_HABIT_UNKNOWN) status = is_leaf_way(sketch, &is_none, error);
     if (status != PLM_OK || !is_none) return status;
     plm_stem_path_free(&sketch->stem);
     for (size_t i = 0; i < sketch->working.count; i++) sketch->is_stem[i] = false;

@@ -4,8 +4,8 @@
 
 #include "segment/sketch.h"
 
-/** Takes the stem off a sketch that has one where its way hardly rises or, where habit (what the user says) is
- * unknown, leads along a leaf among those of a rosette. Writes sketch->group. PLM_E_MEMORY. */
-plm_status plm_stem_drop_false(plm_sketch *sketch, plm_habit habit, plm_error *error);
+/** Takes the stem off a sketch that has one where its way hardly rises or, where the user has not said what
+ * plant it is, leads along a leaf among those of a rosette. Writes sketch->group. PLM_E_MEMORY. */
+plm_status plm_stem_drop_false(plm_sketch *sketch, plm_error *error);
 
 #endif

@@ -115,9 +115,9 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     const bool stemless = tubes != PLM_TUBES_SURE && sketch->scale.is_doubtful && sketch->scale.is_blurred;
     if (status == PLM_OK && may_have_stem(options->habit) && !stemless) status = plm_sketch_stem(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
-    if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, options->habit, error);
+    if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
-    if (status == PLM_OK) status = plm_sketch_leaves(sketch, options->habit, error);
+    if (status == PLM_OK) status = plm_sketch_leaves(sketch, error);
     if (status == PLM_OK) status = plm_sketch_strays(sketch, error);
     return status;
 }

@@ -29,7 +29,7 @@ typedef struct plm_sketch {
     bool *is_tube;
     bool *is_stem; /**< is_tube, and on the main stem */
     plm_stem_path stem;
-    plm_habit asked; /**< what the user says it is */
+    plm_habit asked; /**< what the user says it is; PLM_HABIT_UNKNOWN: nothing */
     plm_habit habit;
     int32_t *group;   /**< side group (all that hangs on one foot at the stem), -1: stem */
     int32_t *leaf;    /**< leaf that a blade or petiole point belongs to, -1 */
@@ -63,15 +63,14 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error);
 /** The same for plants whose leaves may be as thick as the stem: the straightest way up from the base. */
 plm_status plm_sketch_upright_stem(plm_sketch *sketch, plm_error *error);
 
-/** Takes back what of the path is the petiole of the topmost leaf, and the whole of it where there is no stem (rosettes). habit: what
- * the user says. */
-plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_habit habit, plm_error *error);
+/** Takes back what of the path is the petiole of the topmost leaf, and the whole of it where there is no stem (rosettes). */
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error);
 
 /** Writes is_stem from the path. */
 void plm_sketch_mark_stem(plm_sketch *sketch);
 
 /** Finds the leaves: side groups, habit, leaves, leaflets. */
-plm_status plm_sketch_leaves(plm_sketch *sketch, plm_habit habit, plm_error *error);
+plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error);
 
 /** Gives few points of a blade or petiole that lie apart from it amid a stem or petiole to those. */
 plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error);

@@ -200,7 +200,7 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
     plm_sketch_mark_stem(sketch);
 }
 
-plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_habit habit, plm_error *error)
+plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
     bool again = true, forked;
@@ -218,5 +218,5 @@ plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_habit habit, plm_error *e
         if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
         plm_side_groups_free(&top.groups);
     }
-    return status == PLM_OK ? plm_stem_drop_false(sketch, habit, error) : status;
+    return status == PLM_OK ? plm_stem_drop_false(sketch, error) : status;
 }
