@@ -29,19 +29,11 @@ static virtual_plant check(const plm_scan_options *options, double f1, double ax
 /* But a user who says that the plant has a stem is believed. */
 static void check_asked_for_stem(const virtual_plant *made)
 {
-    plm_error error = {0};
-    const size_t count = made->scan.cloud.count;
-    bool *keep = calloc(count, sizeof *keep);
-    assert_non_null(keep);
-    for (size_t i = 0; i < count; i++) keep[i] = made->found.label[i] != PLM_LABEL_OTHER;
-    plm_segmentation found;
-    const plm_segment_options simple = {.habit = PLM_HABIT_SIMPLE};
-    assert_ok(plm_segment(&made->scan.cloud, NULL, keep, &simple, &found, &error));
+    plm_segmentation found = virtual_plant_as(made, PLM_HABIT_SIMPLE);
     size_t stem = 0;
-    for (size_t i = 0; i < count; i++) stem += found.label[i] == PLM_LABEL_STEM;
+    for (size_t i = 0; i < found.count; i++) stem += found.label[i] == PLM_LABEL_STEM;
     assert_true(stem > 100);
     plm_segmentation_free(&found);
-    free(keep);
 }
 
 static void the_way_along_a_steep_leaf_is_no_stem(void **unused)
@@ -76,22 +68,15 @@ static void petioles_no_wider_than_the_noise_are_tubes(void **unused)
 static void who_says_rosette_gets_its_leaves(void **unused)
 {
     (void)unused;
-    plm_error error = {0};
     const plm_scan_options options = {DEPTH_CAMERA_OF(1.4e-3), .seed = 30005, .image_width = 1110};
     virtual_plant made = virtual_plant_make("arabidopsis", 0, &options);
-    bool *keep = calloc(made.found.count, sizeof *keep);
-    assert_non_null(keep);
-    for (size_t i = 0; i < made.found.count; i++) keep[i] = made.found.label[i] != PLM_LABEL_OTHER;
-    plm_segmentation found;
-    const plm_segment_options rosette = {.habit = PLM_HABIT_ROSETTE};
-    assert_ok(plm_segment(&made.scan.cloud, NULL, keep, &rosette, &found, &error));
+    plm_segmentation found = virtual_plant_as(&made, PLM_HABIT_ROSETTE);
     print_message("%zu leaves, %zu of them when asked for a rosette, and %zu petioles\n", made.plant.leaf_count,
                   found.leaf_count, found.petiole_count);
     assert_int_equal(found.habit, PLM_HABIT_ROSETTE);
     assert_in_range(found.leaf_count, 8, made.plant.leaf_count);
     assert_true(found.petiole_count >= 8);
     plm_segmentation_free(&found);
-    free(keep);
     virtual_plant_free(&made);
 }
 

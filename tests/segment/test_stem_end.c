@@ -201,7 +201,6 @@ static void only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin(void **unused)
 static void who_says_simple_gets_a_low_stem(void **unused)
 {
     (void)unused;
-    plm_error error = {0};
     const plm_scan_options options = {.scanner = PLM_SCANNER_RGBD,
                                       .seed = 39004,
                                       .points = 45000,
@@ -210,11 +209,7 @@ static void who_says_simple_gets_a_low_stem(void **unused)
                                       .image_width = 1110};
     virtual_plant made = virtual_plant_make("cucumber", 0, &options);
     const plm_cloud *cloud = &made.scan.cloud;
-    bool *keep = calloc(cloud->count, sizeof *keep);
-    assert_non_null(keep);
-    for (size_t i = 0; i < cloud->count; i++) keep[i] = made.found.label[i] != PLM_LABEL_OTHER;
-    plm_segmentation found;
-    assert_ok(plm_segment(cloud, NULL, keep, &(plm_segment_options){.habit = PLM_HABIT_SIMPLE}, &found, &error));
+    plm_segmentation found = virtual_plant_as(&made, PLM_HABIT_SIMPLE);
     size_t stem = 0, seen = 0;
     for (size_t i = 0; i < cloud->count; i++) {
         stem += cloud->label[i] == PLM_LABEL_STEM;
@@ -225,7 +220,6 @@ static void who_says_simple_gets_a_low_stem(void **unused)
     assert_true(10 * seen > 9 * stem);
     assert_int_equal(found.leaf_count, made.plant.leaf_count);
     plm_segmentation_free(&found);
-    free(keep);
     virtual_plant_free(&made);
 }
 

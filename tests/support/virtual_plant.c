@@ -17,6 +17,19 @@ virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_
     return made;
 }
 
+plm_segmentation virtual_plant_as(const virtual_plant *made, plm_habit habit)
+{
+    plm_error error = {0};
+    plm_segmentation found;
+    const plm_segment_options options = {.habit = habit};
+    bool *keep = calloc(made->found.count, sizeof *keep);
+    assert_non_null(keep);
+    for (size_t i = 0; i < made->found.count; i++) keep[i] = made->found.label[i] != PLM_LABEL_OTHER;
+    assert_ok(plm_segment(&made->scan.cloud, NULL, keep, &options, &found, &error));
+    free(keep);
+    return found;
+}
+
 void virtual_plant_free(virtual_plant *made)
 {
     plm_segmentation_free(&made->found);

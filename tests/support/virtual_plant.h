@@ -15,6 +15,9 @@ typedef struct virtual_plant {
  * the test. resolution: as plm_plant_options. Freed by virtual_plant_free. */
 virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_scan_options *options);
 
+/** The organs of the same points as found by who says what plant it is. The caller's: plm_segmentation_free. */
+plm_segmentation virtual_plant_as(const virtual_plant *made, plm_habit habit);
+
 void virtual_plant_free(virtual_plant *made);
 
 #endif
