@@ -111,6 +111,11 @@ static bool has_petioles(const plm_scene *scene)
     return any;
 }
 
+static void turn_by(double angle, const double lying[3], const double upright[3], const double across[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = lying[k] + cos(angle) * upright[k] + sin(angle) * across[k];
+}
+
 /* The likeliest normal, given what noise hides of the turn about the way from base to tip, and that leaves are level across it (a
  * round leaf's longest axis may lie across). error: of its tilt. Gives the weight of being level. */
 static double level_normal(const plm_leaf_surface *surface, const double way[3], double normal[3], double *error)
@@ -130,12 +135,13 @@ static double level_normal(const plm_leaf_surface *surface, const double way[3],
     }
     const double slope = upright[2] < 0 ? -across[2] : across[2];
     const double turn = weight * atan2(slope, fabs(upright[2]));
+    double lying[3];
+    for (int k = 0; k < 3; k++) lying[k] = lean * way[k];
+    turn_by(turn, lying, upright, across, normal);
     *error = 0;
-    for (int k = 0; k < 3; k++) normal[k] = lean * way[k] + cos(turn) * upright[k] + sin(turn) * across[k];
     for (int side = -1; side <= 1; side += 2) {
-        const double to = turn + side * sqrt(weight) * level_sd;
         double turned[3];
-        for (int k = 0; k < 3; k++) turned[k] = lean * way[k] + cos(to) * upright[k] + sin(to) * across[k];
+        turn_by(turn + side * sqrt(weight) * level_sd, lying, upright, across, turned);
         *error = fmax(*error, fabs(tilt_of(turned) - tilt_of(normal)));
     }
     return weight;
