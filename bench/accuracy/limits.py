@@ -1,12 +1,11 @@
 #!/usr/bin/python3
-"""What the points of scans can tell at best, whatever the program does with them.
+"""What the points of scans can tell of some traits, without knowing more than what was scanned.
 
     limits.py TRUTH_FOLDER... [--worst N]
     limits.py --check                     the formula against principal axes of points with noise; exit status 1 if it is off
 
 Each folder is what `plantimeter simulate` writes (PLANT.labelled.ply, PLANT.mesh.ply, PLANT.truth.json; plants without a
-mesh are passed over). Prints by scan
-mode, over the plants of all folders together:
+mesh are passed over). Prints by scan mode, over the plants of all folders together; exit status 1 if there are none:
 
 leaf inclination    RMSE of what noise alone does to the principal plane of a leaf whose labels, whole surface and noise are
                     known (no prior knowledge of how leaves hang): it turns the principal axis a against the normal n (moments
@@ -30,6 +29,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 try:
     import numpy as np
 
+    import bars
     import score
 except ImportError as problem:  # a machine without numpy skips the test
     print(f"skipped: {problem}")
@@ -113,7 +113,7 @@ def add_plant(path, leaves, stems):
             covariance = noise_covariance(scan, np.linalg.eigh(moments)[1][:, 0])
             variance = inclination_variance(moments, covariance, organ["points"] * pixels)
             leaves[scan["mode"]].append((variance, truth["kind"], truth["plant_id"], organ["organ_id"]))
-        if organ["organ"] == "stem" and 0.002 <= organ.get("stem_diameter", 0) <= 0.004:
+        if organ["organ"] == "stem" and bars.THIN_STEM[0] <= organ.get("stem_diameter", 0) <= bars.THIN_STEM[1]:
             xyz = np.column_stack([cloud[k] for k in "xyz"])[cloud["label"] == STEM].astype(float)
             offset = stem_offset(organ, xyz)
             if offset is not None:
@@ -145,19 +145,23 @@ def degrees(variances):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="What the points of scans can tell at best.")
+    parser = argparse.ArgumentParser(description="What the points of scans can tell of some traits.")
     parser.add_argument("folder", nargs="*", help="folder of plantimeter simulate")
     parser.add_argument("--check", action="store_true", help="test the formula by throws of noise")
     parser.add_argument("--worst", type=int, default=0, help="leaves to name")
     options = parser.parse_args()
     if options.check:
         sys.exit(0 if check() else 1)
+    if not options.folder:
+        parser.error("no folder")
     leaves, stems = defaultdict(list), defaultdict(list)
     for folder in options.folder:
         for path in sorted(glob.glob(os.path.join(folder, "*.truth.json"))):
             plant = path[: -len(".truth.json")]
             if os.path.exists(plant + ".mesh.ply"):
                 add_plant(plant, leaves, stems)
+    if not leaves:
+        sys.exit("no virtual plant with a mesh in " + ", ".join(options.folder))
     for mode, rows in leaves.items():
         kinds = defaultdict(list)
         for row in rows:
