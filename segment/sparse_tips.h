@@ -6,7 +6,7 @@
 
 #include "segment/segment.h"
 
-/** Finds what was dropped (drop[i]) though it goes on where the kept surface ends: less than twice as far off as its points there
+/** Finds what was dropped (drop[i]) though it goes on where the kept surface ends: less than three times as far off as its points there
  * are from each other, and in its plane: tip[i], of count points. Not for voxel means, whose ghosts leave rims just so. index is
  * over the points of xyz, kept and dropped. PLM_E_MEMORY only. */
 plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t count, const bool *drop, bool *tip,

@@ -21,6 +21,9 @@ typedef struct plm_extreme_options {
     /** Measured elsewhere: taken where the surface there reads less, as leaves narrower than the quadrics that such noise needs do;
      * or 0. */
     double least_noise;
+    /** The end is that of a tube that is cut off there (the foot of a stem), not the side of one: in points that are no voxel means
+     * nothing says then which part of the noise blurs it, but how its last points lie. */
+    bool cut;
     double disc; /**< of splats, the radius by which fitted discs reach past their centres, added where the surface
                    * ends side-on; 0 for other clouds, and where it is cut off rather than rimmed (the foot of a stem) */
 } plm_extreme_options;
@@ -39,6 +42,8 @@ typedef struct plm_projection {
     float place[3];
     double normal[3]; /**< of the surface, unit, either side */
     double leverage;  /**< variance that is left across the surface per variance of the points, at most 1 */
+    double flatness;  /**< variance of the neighbours across the narrower direction of the surface over that off it */
+    double axis[3];   /**< their longest principal axis, unit, either way */
     double rest;      /**< root mean square distance of the neighbours from the surface, as weighted in the fit */
 } plm_projection;
 

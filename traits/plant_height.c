@@ -41,7 +41,8 @@ static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, pl
     const double least = may_be_rosette ? noise_of_rosette(scene) : 0;
     plm_status status = find_top(scene, least, top, error);
     if (status != PLM_OK) return status;
-    const plm_extreme_options options = {.noise = top->sampling.fused ? 0 : top->sampling.noise, .least_noise = least};
+    const plm_extreme_options options = {
+        .noise = top->sampling.fused ? 0 : top->sampling.noise, .least_noise = least, .cut = !may_be_rosette};
     status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
     bool lowered = false, on_soil = false, standing = false;
     if (status == PLM_OK && may_be_rosette)

@@ -159,16 +159,23 @@ static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], do
     return PLM_OK;
 }
 
-/* What was seen lies no lower than the base: as far as it lies higher than can be chance it tells nothing, and just above soil, where
- * labels end in the noise of both, nothing at all. Where it lies lower than is told (leaves may hang), or is known better, it stays:
- * false. */
+/* Weighs what petioles tell with what was seen. In noise what was seen lies no lower than the base: as far as it lies higher than
+ * can be chance it tells nothing, and just above soil, where labels end in the noise of both, nothing at all. Where it lies lower than
+ * is told (leaves may hang), or is known better, it stays: false. A scan without noise shows points of the base or none, and how far it
+ * lies beyond them is a guess: what is told counts as far as the two may be apart by chance. */
 static bool join(const underside *told, bool standing, plm_extreme *base)
 {
     const double above = -base->value - told->height;
-    if (!(above > 0) || !(standing || told->std_error < base->std_error)) return false;
-    const double told_squared = told->std_error * told->std_error;
-    const double seen_squared =
-        standing ? INFINITY : fmax(base->std_error * base->std_error, above * above - told_squared);
+    const bool noisy = base->sampling.noise > PLM_NOISE_FREE * base->sampling.spacing;
+    if (!(base->std_error > 0)) return false;
+    if (noisy && (!(above > 0) || !(standing || told->std_error < base->std_error))) return false;
+    double told_squared = told->std_error * told->std_error, seen_squared = base->std_error * base->std_error;
+    if (standing)
+        seen_squared = INFINITY;
+    else if (above > 0)
+        seen_squared = fmax(seen_squared, above * above - told_squared);
+    else
+        told_squared = fmax(told_squared, above * above - seen_squared);
     const double sum = 1 / seen_squared + 1 / told_squared;
     base->value = (base->value / seen_squared - told->height / told_squared) / sum;
     base->std_error = sqrt(1 / sum);

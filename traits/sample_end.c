@@ -11,10 +11,13 @@ enum {
     MOST = 300, /* heights: more stand for parts of the plant further down */
     STEPS = 96, /* of the grid of ends */
     SMOOTH_POWERS = 4,
-    NOISY_POWERS = 2 /* whole numbers: their blurred densities have closed forms */
+    NOISY_POWERS = 2, /* whole numbers: their blurred densities have closed forms */
+    PARTS = 4,
+    MOST_WEIGHTS = NOISY_POWERS * PARTS /* no fewer than SMOOTH_POWERS */
 };
 
 static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5};
+static const double part_of_along[PARTS] = {0.25, 0.5, 0.75, 1}, usual_part = 0.5;
 static const double below_top = 4.0; /* SD of noise below the highest point from which the end is sought ... */
 
 static int descending(const void *a, const void *b)
@@ -48,14 +51,20 @@ static void blurred_powers(double y, double mean[3])
     mean[2] = (y * y + 1) * below + y * density;
 }
 
-/* The same with noise, each height's own, for the powers 1 and 2. */
-static void noisy_likelihood(const plm_height *height, size_t used, double end, double out[NOISY_POWERS])
+static double spread_of(const plm_height *height, double part)
 {
-    double mean[3], all[3];
+    return hypot(height->spread, part * height->along);
+}
+
+/* The same with noise, each height's own, for the powers 1 and 2. part: of the noise `along`. */
+static void noisy_likelihood(const plm_height *height, size_t used, double end, double part, double out[NOISY_POWERS])
+{
+    double mean[3], all[3], last = -1;
     for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] = 0;
     for (size_t i = 0; i < used; i++) {
-        const double spread = height[i].spread;
-        if (i == 0 || spread != height[i - 1].spread) blurred_powers((end - height[used].at) / spread, all);
+        const double spread = spread_of(&height[i], part);
+        if (spread != last) blurred_powers((end - height[used].at) / spread, all);
+        last = spread;
         blurred_powers((end - height[i].at) / spread, mean);
         for (int power = 1; power <= NOISY_POWERS; power++)
             out[power - 1] += log(power * mean[power - 1] / (spread * all[power]));
@@ -63,14 +72,14 @@ static void noisy_likelihood(const plm_height *height, size_t used, double end, 
 }
 
 /* Mean and SD over a grid of ends from weights in logarithms. */
-static void grid_moments(const double (*weight)[SMOOTH_POWERS], size_t powers, double first, double step, double *end,
+static void grid_moments(const double (*weight)[MOST_WEIGHTS], size_t weights, double first, double step, double *end,
                          double *std_error)
 {
     double most = -INFINITY, total = 0, sum = 0, squares = 0;
     for (size_t j = 0; j < STEPS; j++)
-        for (size_t p = 0; p < powers; p++) most = fmax(most, weight[j][p]);
+        for (size_t p = 0; p < weights; p++) most = fmax(most, weight[j][p]);
     for (size_t j = 0; j < STEPS; j++)
-        for (size_t p = 0; p < powers; p++) {
+        for (size_t p = 0; p < weights; p++) {
             const double w = exp(weight[j][p] - most), at = ((double)j + 0.5) * step;
             total += w;
             sum += w * at;
@@ -93,8 +102,11 @@ static size_t heights_to_use(const plm_height *height, size_t count, double spre
 size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *std_error, double *depth)
 {
     qsort(height, count, sizeof *height, descending);
-    double squares = 0;
-    for (size_t i = 0; i < count; i++) squares += height[i].spread * height[i].spread;
+    double squares = 0, along = 0;
+    for (size_t i = 0; i < count; i++) {
+        squares += pow(spread_of(&height[i], usual_part), 2);
+        along = fmax(along, height[i].along);
+    }
     const double spread = sqrt(squares / (double)count);
     const size_t used = heights_to_use(height, count, spread);
     const double span = height[0].at - height[used].at;
@@ -104,19 +116,20 @@ size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *
         *depth = 0;
         return count;
     }
-    const double first = fmax(height[used].at, height[0].at - below_top * fmax(spread, height[0].spread)),
+    const double first =
+                     fmax(height[used].at, height[0].at - below_top * fmax(spread, spread_of(&height[0], usual_part))),
                  step = (height[0].at + span - first) / STEPS;
-    double weight[STEPS][SMOOTH_POWERS];
+    const int parts = along > 0 ? PARTS : 1;
+    double weight[STEPS][MOST_WEIGHTS];
     for (size_t j = 0; j < STEPS; j++) {
         const double at = first + ((double)j + 0.5) * step;
-        if (spread > 0)
-            noisy_likelihood(height, used, at, weight[j]);
-        else
-            for (size_t p = 0; p < SMOOTH_POWERS; p++)
-                weight[j][p] = smooth_likelihood(height, used, at, smooth_power[p]);
+        for (int p = 0; spread > 0 && p < parts; p++)
+            noisy_likelihood(height, used, at, part_of_along[p], &weight[j][NOISY_POWERS * p]);
+        for (size_t p = 0; !(spread > 0) && p < SMOOTH_POWERS; p++)
+            weight[j][p] = smooth_likelihood(height, used, at, smooth_power[p]);
     }
-    grid_moments((const double(*)[SMOOTH_POWERS])weight, spread > 0 ? NOISY_POWERS : SMOOTH_POWERS, first, step, end,
-                 std_error);
+    grid_moments((const double(*)[MOST_WEIGHTS])weight, spread > 0 ? (size_t)(NOISY_POWERS * parts) : SMOOTH_POWERS,
+                 first, step, end, std_error);
     *depth = fmax(*end - height[used].at, 0);
     return used;
 }

@@ -8,9 +8,12 @@
 #define PLM_END_FEWEST 24
 #define PLM_END_DEPTH  3.0
 
-/** How high a point lies, and the SD of the noise in that, as known beforehand; 0: none (then in all of them). */
+/** How high a point lies, and the noise in that. No noise at all: 0 in all of them. */
 typedef struct plm_height {
-    double at, spread;
+    double at;
+    double spread; /**< SD, as known beforehand */
+    double
+        along; /**< SD of more of it that is there in part: which part the heights tell; 0: none (then in all of them) */
 } plm_height;
 
 /** Where heights of points of a surface would end if it were sampled without gaps and without noise.
@@ -19,8 +22,8 @@ typedef struct plm_height {
  * depth        out, from the end to the lowest height that was used; gives how many were
  *
  * Below the end e the surface's area grows as a power a of the depth: 1 for a flat edge, 3/2 for a round rim, 2 for a tip.
- * The highest points then have the density a (e - z)^(a - 1), blurred by the noise of each; end and power are found together,
- * all ends alike beforehand and the powers alike (P. Hall 1982, On estimating the endpoint of a distribution; here with
+ * The highest points then have the density a (e - z)^(a - 1), blurred by the noise of each; end, power and the part of `along`
+ * (a quarter to all of it) are found together, all ends, powers and parts alike beforehand (P. Hall 1982, On estimating the endpoint of a distribution; here with
  * a prior in place of his known power). */
 size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *std_error, double *depth);
 

@@ -102,11 +102,28 @@ static void petioles_tell_the_base_that_they_hide(void **unused)
     }
 }
 
-/* Noise that was measured on narrow leaves and petioles read so low that heights were 3 and 4 standard errors too large. */
+/* Where no point of the underside is, how far it lies beyond those that were seen is a guess, which petioles mend: 0.1 mm too tall of 9
+ * and of 13 mm. */
+static void petioles_mend_what_is_guessed_of_the_base(void **unused)
+{
+    (void)unused;
+    static const uint64_t seeds[] = {40002, 40004};
+    for (size_t k = 0; k < COUNT(seeds); k++) {
+        const plm_scan_options dome = {.scanner = PLM_SCANNER_DOME, .seed = seeds[k], .points = 45000};
+        double built;
+        const plm_estimate height = height_by(&dome, &built);
+        assert_near(height.value, built, 0.04e-3);
+        assert_near(height.value, built, 2 * height.std_error);
+    }
+}
+
+/* Noise that was measured on narrow leaves and petioles read so low that heights were 3 and 4 standard errors too large. And what is left
+ * of it where few points are looked at, or as many as a tube hides, made them 0.4 mm too large in the mean. */
 static void heights_of_splats_know_the_noise(void **unused)
 {
     (void)unused;
-    const uint64_t seeds[] = {18101, 18106};
+    const uint64_t seeds[] = {18101, 18106, 40003, 40005, 40006};
+    double mean = 0;
     for (size_t k = 0; k < COUNT(seeds); k++) {
         const plm_scan_options splat = {
             .scanner = PLM_SCANNER_SPLAT, .seed = seeds[k], .points = 45000, .noise = 5e-4, .outliers = 0.005};
@@ -116,9 +133,11 @@ static void heights_of_splats_know_the_noise(void **unused)
         const double built = plant.whole.highest - plant.whole.lowest;
         print_message("%.2f mm too high, standard error %.2f\n", 1e3 * (height.value - built), 1e3 * height.std_error);
         assert_near(height.value, built, 2.5 * height.std_error);
+        mean += (height.value - built) / COUNT(seeds);
         plm_measurement_free(&measurement);
         plm_virtual_plant_free(&plant);
     }
+    assert_near(mean, 0, 0.2e-3);
 }
 
 /* A low dome whose top is a spot at which thousands of points coincide: there is no spacing there, and no noise to know. */
@@ -310,6 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_foot_is_as_low_as_it_was_seen),
         cmocka_unit_test(petioles_tell_the_base_that_they_hide),
+        cmocka_unit_test(petioles_mend_what_is_guessed_of_the_base),
         cmocka_unit_test(heights_of_splats_know_the_noise),
         cmocka_unit_test(points_that_coincide_have_a_height),
         cmocka_unit_test(soil_under_a_rosette_is_no_foot),

@@ -36,7 +36,7 @@ static void try_power(double power, double spread, double rims, double *bias, do
     for (int trial = 0; trial < TRIALS; trial++) {
         for (int i = 0; i < POINTS; i++) {
             const double own = i % 3 ? spread : rims * spread;
-            height[i] = (plm_height){-pow(uniform(), 1 / power) + own * normal(), own};
+            height[i] = (plm_height){-pow(uniform(), 1 / power) + own * normal(), own, 0};
         }
         plm_end_of_sample(height, POINTS, &end, &error, &depth);
         sum += end;
@@ -95,7 +95,7 @@ static void each_height_has_its_own_noise(void **unused)
 static void heights_that_are_all_alike_have_their_end_there(void **unused)
 {
     (void)unused;
-    plm_height height[5] = {{2, 0}, {2, 0}, {2, 0}, {2, 0}, {2, 0}}, noisy = {2, 0.5};
+    plm_height height[5] = {{2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 0, 0}}, noisy = {2, 0.5, 0};
     double end, error, depth;
     assert_int_equal(plm_end_of_sample(height, 5, &end, &error, &depth), 5);
     assert_true(end == 2 && error == 0 && depth == 0);
@@ -109,7 +109,7 @@ static void the_order_of_the_heights_leaves_no_trace(void **unused)
     plm_height one[200], other[200];
     double end[2], error[2], depth;
     state = 5;
-    for (int i = 0; i < 200; i++) one[i] = other[199 - i] = (plm_height){-uniform(), 0.001};
+    for (int i = 0; i < 200; i++) one[i] = other[199 - i] = (plm_height){-uniform(), 0.001, 0};
     plm_end_of_sample(one, 200, &end[0], &error[0], &depth);
     plm_end_of_sample(other, 200, &end[1], &error[1], &depth);
     assert_true(end[0] == end[1] && error[0] == error[1]);
