@@ -12,12 +12,12 @@
 enum {
     BINS = 4096,
     BAND_POINTS = 2000, /* enough to know spacing and noise by */
-    BALL_ROOM = 1024,
-    QUADRIC_POINTS = 600,
+    BALL_ROOM = 2048,
+    QUADRIC_POINTS = 400,
     QUADRIC_USUAL = 48, /* fewer leave half of the noise in the projected points */
     QUADRIC_FEWEST = 12,
     PROJECTION_STEPS = 2,
-    FIT_POINTS = 800,
+    FIT_POINTS = 200,
     SUPPORT = 8 /* neighbours that support a point */
 };
 
@@ -78,35 +78,52 @@ static double tangent_frame(const double (*offset)[3], const double *weight, siz
     return value[0] > 0 ? value[1] / fmax(value[2], 1e-12 * value[0]) : INFINITY;
 }
 
+/* The products of powers of u and v up to the fourth, and which of them is the product of two terms of a quadric. */
+enum { TERMS = 6, PRODUCTS = 15 };
+
+static const unsigned char product[TERMS][TERMS] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},
+                                                    {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
+                                                    {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+
+/** Sums over the neighbours, by weight and by its square. */
+typedef struct quadric_sums {
+    double product[PRODUCTS], product_squared[PRODUCTS], right[TERMS], squares;
+} quadric_sums;
+
+static quadric_sums sum_up(const patch *p, double scale)
+{
+    quadric_sums sum = {0};
+    for (size_t i = 0; i < p->count; i++) {
+        const double u = p->local[i][0] / scale, v = p->local[i][1] / scale, uu = u * u, uv = u * v, vv = v * v;
+        const double of[PRODUCTS] = {1,      u,      v,       uu,      uv,      vv,      u * uu, v * uu,
+                                     u * vv, v * vv, uu * uu, uu * uv, uu * vv, uv * vv, vv * vv};
+        const double w = p->weight[i], squared = w * w, h = p->local[i][2];
+        for (int k = 0; k < PRODUCTS; k++) sum.product[k] += w * of[k];
+        for (int k = 0; k < PRODUCTS; k++) sum.product_squared[k] += squared * of[k];
+        for (int k = 0; k < TERMS; k++) sum.right[k] += w * h * of[k];
+        sum.squares += w * h * h;
+    }
+    return sum;
+}
+
 /* The weighted quadric at u = v = 0: its height, its leverage (the variance of that height per variance of the points), and
  * the points' root mean square distance from it. False where the neighbours do not determine it. */
 static bool quadric_height(const patch *p, double scale, double *height, double *leverage, double *rest)
 {
-    double normal[36] = {0}, right[6] = {0}, spread[36] = {0}, factor[36], unit[6] = {1}, weights = 0, squares = 0;
-    for (size_t i = 0; i < p->count; i++) {
-        weights += p->weight[i];
-        squares += p->weight[i] * p->local[i][2] * p->local[i][2];
-        const double u = p->local[i][0] / scale, v = p->local[i][1] / scale, w = p->weight[i];
-        const double row[6] = {1, u, v, u * u, u * v, v * v};
-        for (int a = 0; a < 6; a++) {
-            right[a] += w * row[a] * p->local[i][2];
-            for (int b = 0; b < 6; b++) {
-                normal[a * 6 + b] += w * row[a] * row[b];
-                spread[a * 6 + b] += w * w * row[a] * row[b];
-            }
-        }
-    }
-    for (int a = 1; a < 6; a++) normal[a * 7] *= 1 + 1e-6; /* a ridge for slivers */
-    double solved[6];
+    const quadric_sums sum = sum_up(p, scale);
+    double normal[TERMS * TERMS], factor[TERMS * TERMS], solved[TERMS], unit[TERMS] = {1}, squares = sum.squares;
+    for (int a = 0; a < TERMS; a++)
+        for (int b = 0; b < TERMS; b++) normal[a * TERMS + b] = sum.product[product[a][b]];
+    for (int a = 1; a < TERMS; a++) normal[a * (TERMS + 1)] *= 1 + 1e-6; /* a ridge for slivers */
+    memcpy(solved, sum.right, sizeof solved);
     memcpy(factor, normal, sizeof factor);
-    memcpy(solved, right, sizeof solved);
-    if (!plm_solve_spd(6, normal, solved) || !plm_solve_spd(6, factor, unit)) return false;
+    if (!plm_solve_spd(TERMS, normal, solved) || !plm_solve_spd(TERMS, factor, unit)) return false;
     *height = solved[0];
     *leverage = 0;
-    for (int a = 0; a < 6; a++) squares -= solved[a] * right[a];
-    *rest = sqrt(fmax(squares, 0) / weights);
-    for (int a = 0; a < 6; a++)
-        for (int b = 0; b < 6; b++) *leverage += unit[a] * spread[a * 6 + b] * unit[b];
+    for (int a = 0; a < TERMS; a++) squares -= solved[a] * sum.right[a];
+    *rest = sqrt(fmax(squares, 0) / sum.product[0]);
+    for (int a = 0; a < TERMS; a++)
+        for (int b = 0; b < TERMS; b++) *leverage += unit[a] * sum.product_squared[product[a][b]] * unit[b];
     return true;
 }
 

@@ -16,8 +16,9 @@ enum { FINEST_VOXELS = 200, COARSEST_VOXELS = 50 };
 static const double most_lonely = 0.3;
 /* Turn of the axis times relative gap of the eigenvalues, radians: 0.006 clean, 0.013 in noise, on virtual plants. */
 static const double axis_turn = 0.012;
-/* A pair of points that is wider apart than the surface there by this factor holds stray points. */
-static const double stray_share = 1.02;
+/* A pair of points that is wider apart than the surface there by this factor, and by so many SD of noise at each end, holds stray
+ * points. */
+static const double stray_share = 1.02, stray_noise = 3;
 
 /* end: out, both ends, may be NULL. known: NULL, or ends in nearly the same direction, whose sampling is taken over. */
 static plm_status extent_between(const plm_scene *scene, const double axis[3], const plm_extreme *known,
@@ -129,8 +130,11 @@ plm_status plm_trait_plant_width(const plm_scene *scene, const plm_organ *organ,
     double direction[3];
     const double widest = widest_direction((const float(*)[3])scene->plant, scene->plant_count, direction);
     out->method = "widest pair";
-    const plm_status status = extent_along(scene, direction, &out->value, &out->std_error, error);
-    if (status != PLM_OK || widest <= stray_share * out->value) return status;
+    plm_extreme end[2];
+    const plm_status status = extent_between(scene, direction, NULL, end, &out->value, &out->std_error, error);
+    if (status != PLM_OK) return status;
+    const double thrown = stray_noise * (end[0].sampling.noise + end[1].sampling.noise);
+    if (widest <= stray_share * out->value + thrown) return PLM_OK;
     return widest_extent(scene, out, error);
 }
 
