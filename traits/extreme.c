@@ -12,19 +12,19 @@
 enum {
     BINS = 4096,
     BAND_POINTS = 2000, /* enough to know spacing and noise by */
-    BALL_ROOM = 2048,
+    BALL_ROOM = 1024,
     QUADRIC_POINTS = 400,
     QUADRIC_USUAL = 48, /* fewer leave half of the noise in the projected points */
     QUADRIC_FEWEST = 12,
     PROJECTION_STEPS = 2,
-    FIT_POINTS = 200,
+    FIT_POINTS = 160,
     SUPPORT = 8 /* neighbours that support a point */
 };
 
-/* Noise along the surface per noise across it, which projection does not take away: of voxel means, and what is usual elsewhere (a
- * quarter to the whole of it: traits/sample_end.c finds which). */
-static const double fused_along = 0.7, usual_along = 0.5;
-/* Part of the noise that stays in an extreme as a common error: the noise is known to a half, what of it lies along the surface included. */
+/* Noise along the surface per noise across it, which projection does not take away: of voxel means (elsewhere a quarter to the whole of
+ * it: traits/sample_end.c finds which). */
+static const double fused_along = 0.7;
+/* Part of the noise that stays in an extreme as a common error: the noise is known to a half. */
 static const double noise_unknown = 0.5;
 /* Distance to the 8th neighbour on a sheet in spacings, and by which factor it may be exceeded: in voxel means, which are
  * even, points of the plant reach 1.7 at leaf tips, ghosts begin at 1.2. Elsewhere against that of the neighbours. */
@@ -185,7 +185,8 @@ bool plm_project_to_surface(const plm_subset *points, const float point[3], doub
     return true;
 }
 
-/* A ball of 5 noise holds FIT_POINTS of them: more say no more, as no more than QUADRIC_POINTS are fitted to. */
+/* A ball of 5 noise holds at least FIT_POINTS of a sheet, up to twice as many, all of which are fitted to: QUADRIC_POINTS leave room for
+ * what is denser. More would cost more than they tell (with four times as many, heights of rosettes as splats are no better). */
 plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t count, const plm_sampling *sampling,
                           plm_subset *points, plm_error *error)
 {
@@ -293,7 +294,8 @@ static bool height_of(const source *from, const float place[3], plm_height *out,
     plm_projection onto;
     if (!plm_is_supported(from->index, from->band, place, from->sampling)) return false;
     if (!plm_project_to_surface(from->points, place, noise, &onto)) return false;
-    const bool thin = onto.flatness < least_flatness && !(fused && from->cut);
+    const bool thin =
+        onto.flatness < least_flatness && !(fused && from->cut); /* voxel means keep a stem's end a surface */
     const bool as_seen = thin || onto.rest > no_surface * noise;
     if (as_seen) memcpy(onto.place, place, sizeof onto.place), onto.leverage = 1;
     const double across = plm_dot(onto.normal, from->direction),
@@ -324,7 +326,7 @@ static void take_noisy(const source *from, const ranked *rank, size_t count, hei
         if (!height_of(from, rank[i].place, &height, &facing)) continue;
         out->of[out->count++] = height;
         out->facing += facing;
-        squares += pow(height.spread, 2) + pow(usual_along * height.along, 2);
+        squares += pow(plm_height_spread(&height), 2);
         top = fmax(top, height.at);
     }
     out->facing /= fmax(1, (double)out->count);

@@ -22,7 +22,7 @@ typedef struct plm_extreme_options {
      * or 0. */
     double least_noise;
     /** The end is that of a tube that is cut off there (the foot of a stem), not the side of one: in points that are no voxel means
-     * nothing says then which part of the noise blurs it, but how its last points lie. */
+     * nothing says then which part of the noise blurs it, but how its last points lie. (In voxel means the projected points tell.) */
     bool cut;
     double disc; /**< of splats, the radius by which fitted discs reach past their centres, added where the surface
                    * ends side-on; 0 for other clouds, and where it is cut off rather than rimmed (the foot of a stem) */
@@ -31,7 +31,8 @@ typedef struct plm_extreme_options {
 /** Finds how far the surface behind count points reaches along a unit direction. Only the outermost points are looked at
  * (some thousand, with a small index of their own), so the cost is one pass over the cloud.
  *
- * Noisy: points without support are left out, the others projected onto local quadrics. Where the surface ends behind them
+ * Noisy: points without support are left out, the others projected onto local quadrics, but for those whose
+ * neighbours are no surface, which count as seen. Where the surface ends behind them
  * and how sure that is say the outermost heights (traits/sample_end.h).
  * PLM_E_DEGENERATE for no points. */
 plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3],

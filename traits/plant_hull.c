@@ -2,7 +2,7 @@
  * points near the raw hull are projected onto local quadrics first, and what is left of both is corrected by how much a
  * random half of the points loses (a deficit that grows as n^-0.58, between wedge tips and smooth rims, wants the
  * Richardson factor 2.0) and by noise times area. What nothing supports (ghosts) is peeled off first. The factors for
- * noisy clouds are fits over virtual scans (uneven ones: 32 scans and smooth solids, error 1.7 to 1.0 %). Condition: 1 in
+ * noisy clouds are fits over virtual scans (see factors_of). Condition: 1 in
  * volume; for a sheet the volume is noise over thickness, which the standard error shows. */
 #include "traits/extreme.h"
 #include "traits/families.h"
@@ -172,8 +172,8 @@ static const double pixel_inset = 0.3, pixel_outset = 0.7;
 
 /* thin: the noise of rims adds to a hull on both sides, the more the less lies between them: fitted, with the two before, to 191
  * virtual splats of 0.5 mm of noise from rosettes of 20 mm to maize (error 0.80 %, of each quarter by the others' fit 0.84; of 80 others
- * of 10 to 120 thousand points and 0.1 to 0.8 mm 1.2 %). Other noisy scans that are not voxel means take them too. That of voxel
- * means is between what 290 scans by virtual depth cameras ask for (0.5: rosettes -0.2, others -0.4 %) and four of another family (0.2). */
+ * of 10 to 120 thousand points and 0.1 to 0.8 mm 1.2 %). Other noisy scans that are not voxel means take them too. For voxel means
+ * `noise` is between what 290 scans by virtual depth cameras ask for (0.5: rosettes -0.2, others -0.4 %) and four of another family (0.2). */
 static hull_factors factors_of(const plm_scene *scene, bool noisy)
 {
     if (!noisy) return (hull_factors){.deficit = 2.0, .deficit_error = 0.5, .area_deficit = 2.0};

@@ -130,17 +130,22 @@ static underside least_of(const underside *side, size_t count)
     return (underside){low + mean, sqrt(fmax(squares - mean * mean, 0)), noise, 0};
 }
 
+static bool is_noisy(const plm_extreme *base)
+{
+    return base->sampling.noise > PLM_NOISE_FREE * base->sampling.spacing;
+}
+
 /* Where the soil about the foot is seen, and what was seen of the plant ends near it, the rosette stands on it: the underside of its
  * lowest petiole is somewhere between the soil and `stands` of a petiole's radii above it (the least of radii: points of others make
  * petioles wide). Weighs that with what petioles tell, each as far as the two may be apart by chance. Labels that were given, and
- * scans without noise, show the base itself. */
+ * scans without noise, need no soil for it. */
 static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], double height, const plm_extreme *base,
                                 const underside *side, size_t count, underside *told, bool *standing, plm_error *error)
 {
     const double noise = base->sampling.noise;
     double radius = INFINITY, soil, soil_error;
     *standing = false;
-    if (scene->labels_given || !(noise > PLM_NOISE_FREE * base->sampling.spacing)) return PLM_OK;
+    if (scene->labels_given || !is_noisy(base)) return PLM_OK;
     for (size_t i = 0; i < count; i++) radius = fmin(radius, side[i].radius);
     bool seen;
     const plm_status status =
@@ -166,9 +171,8 @@ static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], do
 static bool join(const underside *told, bool standing, plm_extreme *base)
 {
     const double above = -base->value - told->height;
-    const bool noisy = base->sampling.noise > PLM_NOISE_FREE * base->sampling.spacing;
-    if (!(base->std_error > 0)) return false;
-    if (noisy && (!(above > 0) || !(standing || told->std_error < base->std_error))) return false;
+    if (!(base->std_error > 0) || !isfinite(above)) return false;
+    if (is_noisy(base) && (!(above > 0) || !(standing || told->std_error < base->std_error))) return false;
     double told_squared = told->std_error * told->std_error, seen_squared = base->std_error * base->std_error;
     if (standing)
         seen_squared = INFINITY;

@@ -13,18 +13,20 @@ enum {
     SMOOTH_POWERS = 4,
     NOISY_POWERS = 2, /* whole numbers: their blurred densities have closed forms */
     PARTS = 4,
-    MOST_WEIGHTS = NOISY_POWERS * PARTS /* no fewer than SMOOTH_POWERS */
+    MOST_WEIGHTS = NOISY_POWERS * PARTS
 };
+_Static_assert((int)MOST_WEIGHTS >= (int)SMOOTH_POWERS, "weights of one end");
 
 static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5};
-static const double part_of_along[PARTS] = {0.25, 0.5, 0.75, 1}, usual_part = 0.5;
+static const double part_of_along[PARTS] = {0.25, 0.5, 0.75, 1};
 static const double below_top = 4.0; /* SD of noise below the highest point from which the end is sought ... */
 
 static int descending(const void *a, const void *b)
 {
     const plm_height *x = a, *y = b;
     if (x->at != y->at) return x->at < y->at ? 1 : -1;
-    return (x->spread > y->spread) - (x->spread < y->spread);
+    if (x->spread != y->spread) return x->spread > y->spread ? 1 : -1;
+    return (x->along > y->along) - (x->along < y->along);
 }
 
 /* Log likelihood, up to a constant, of the heights above the last one (height[used]) for an end and a power. */
@@ -54,6 +56,11 @@ static void blurred_powers(double y, double mean[3])
 static double spread_of(const plm_height *height, double part)
 {
     return hypot(height->spread, part * height->along);
+}
+
+double plm_height_spread(const plm_height *height)
+{
+    return spread_of(height, 1);
 }
 
 /* The same with noise, each height's own, for the powers 1 and 2. part: of the noise `along`. */
@@ -104,7 +111,7 @@ size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *
     qsort(height, count, sizeof *height, descending);
     double squares = 0, along = 0;
     for (size_t i = 0; i < count; i++) {
-        squares += pow(spread_of(&height[i], usual_part), 2);
+        squares += pow(plm_height_spread(&height[i]), 2);
         along = fmax(along, height[i].along);
     }
     const double spread = sqrt(squares / (double)count);
@@ -116,8 +123,7 @@ size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *
         *depth = 0;
         return count;
     }
-    const double first =
-                     fmax(height[used].at, height[0].at - below_top * fmax(spread, spread_of(&height[0], usual_part))),
+    const double first = fmax(height[used].at, height[0].at - below_top * fmax(spread, plm_height_spread(&height[0]))),
                  step = (height[0].at + span - first) / STEPS;
     const int parts = along > 0 ? PARTS : 1;
     double weight[STEPS][MOST_WEIGHTS];

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/** The end is found from so many heights at least, and from all within so many SD of noise below the highest. */
+/** The end is found from so many heights at least, and from all within so many SD of the noise that may be in them below the highest. */
 #define PLM_END_FEWEST 24
 #define PLM_END_DEPTH  3.0
 
@@ -12,9 +12,12 @@
 typedef struct plm_height {
     double at;
     double spread; /**< SD, as known beforehand */
-    double
-        along; /**< SD of more of it that is there in part: which part the heights tell; 0: none (then in all of them) */
+    /** SD of more of it that is there in part: which part the heights tell; not 0 where spread is, in noise. */
+    double along;
 } plm_height;
+
+/** SD of the noise that may be in a height: with all of what is there in part. */
+double plm_height_spread(const plm_height *height);
 
 /** Where heights of points of a surface would end if it were sampled without gaps and without noise.
  * height       count of them (at least 1), any order: sorted on return, highest first
