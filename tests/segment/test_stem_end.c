@@ -8,7 +8,6 @@
 #include "support/virtual_plant.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* All leaves are found, and so much of the stem. */

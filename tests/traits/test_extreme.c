@@ -1,6 +1,5 @@
 /* tests/traits/test_extreme.c: how far noisy surfaces reach where no quadric fits: the cut end of a stem, a tube as thin as the
- * noise. Points have noise off their surface and a quarter of it along it, as fits to
- * photographs do. */
+ * noise. Points have noise off their surface and a quarter of it along it, as fits to photographs do. */
 #include "support/test.h"
 
 #include "cloud/linear.h"
