@@ -351,7 +351,7 @@ static void find_end(heights *found, const plm_sampling *sampling, const double 
 {
     double depth;
     const size_t used = plm_end_of_sample(found->of, found->count, &extreme->value, &extreme->std_error, &depth);
-    if (!(found->of[0].spread > 0) && !(found->of[0].along > 0)) return;
+    if (!(plm_height_spread(&found->of[0]) > 0)) return;
     const double tip = depth * depth / (2 * (double)used * sampling->spacing);
     const double under = sampling->fused && direction[2] < 0 ? -direction[2] * found->facing * sampling->spacing : 0;
     const bool is_top = sampling->fused && direction[2] > 0;
