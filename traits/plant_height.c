@@ -8,6 +8,7 @@
 #include "traits/rosette_base.h"
 #include "traits/scene.h"
 #include "traits/soil_base.h"
+#include "traits/stem_foot.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,7 +31,7 @@ static double noise_of_rosette(const plm_scene *scene)
 }
 
 /** What the base of a plant is known by. */
-typedef enum base_by { BY_SURFACE, BY_PETIOLES, BY_PETIOLES_AND_SOIL, BY_SOIL, BASES } base_by;
+typedef enum base_by { BY_SURFACE, BY_PETIOLES, BY_PETIOLES_AND_SOIL, BY_SOIL, BY_STEM, BASES } base_by;
 
 /* The stem's foot is cut off, so no disc ends short of it; the top's leaves tell the noise better than a thin stem, but for depth
  * cameras, which are noisier at a stem's sides than on leaves that many views see. */
@@ -44,12 +45,14 @@ static plm_status find_top_and_base(const plm_scene *scene, plm_extreme *top, pl
     const plm_extreme_options options = {
         .noise = top->sampling.fused ? 0 : top->sampling.noise, .least_noise = least, .cut = !may_be_rosette};
     status = plm_extreme_along((const float(*)[3])scene->plant, scene->plant_count, NADIR, &options, base, error);
-    bool lowered = false, on_soil = false, standing = false;
+    bool lowered = false, on_soil = false, standing = false, cut = false;
     if (status == PLM_OK && may_be_rosette)
         status = plm_rosette_base(scene, top->value + base->value, base, &lowered, &on_soil, error);
     else if (status == PLM_OK)
         status = plm_soil_base(scene, top->value + base->value, base, &standing, error);
-    *by = lowered ? (on_soil ? BY_PETIOLES_AND_SOIL : BY_PETIOLES) : standing ? BY_SOIL : BY_SURFACE;
+    if (status == PLM_OK && !may_be_rosette && !standing)
+        status = plm_stem_foot((const float(*)[3])scene->plant, scene->plant_count, base, &cut, error);
+    *by = lowered ? (on_soil ? BY_PETIOLES_AND_SOIL : BY_PETIOLES) : standing ? BY_SOIL : cut ? BY_STEM : BY_SURFACE;
     return status;
 }
 
@@ -64,7 +67,8 @@ plm_status plm_trait_plant_height(const plm_scene *scene, const plm_organ *organ
     out->std_error = hypot(top.std_error, base.std_error);
     static const char *const method[BASES] = {"extremes of the surface", "extremes of the surface, base by petioles",
                                               "extremes of the surface, base by petioles and soil",
-                                              "top of the surface above the soil at the foot"};
+                                              "top of the surface above the soil at the foot",
+                                              "top of the surface above the end of the stem"};
     out->method = method[by];
     return PLM_OK;
 }
@@ -143,7 +147,8 @@ static plm_status height_of(const plm_scene *scene, double (*level)(const float 
         out->std_error = sqrt(base.std_error * base.std_error + spread * spread + pow(extent / 150, 2) / 12);
         static const char *const method[BASES] = {"heights of equal areas", "heights of equal areas, base by petioles",
                                                   "heights of equal areas, base by petioles and soil",
-                                                  "heights of equal areas above the soil at the foot"};
+                                                  "heights of equal areas above the soil at the foot",
+                                                  "heights of equal areas above the end of the stem"};
         out->method = method[by];
     }
     plm_free(height);
