@@ -1,6 +1,6 @@
 /* segment/sparse_tips.c: scanners and fits to photographs see the tip of a leaf less often than its blade, so points lie two to
  * five times as far apart there, as floaters do that come near a plant. But a tip is led to step by step, in the plane of what
- * is before it: so what was dropped is looked at from the kept surface on, a seam at a time. Of the points that
+ * is before it, and the sparse foot of a stem on the tube: so what was dropped is looked at from the kept surface on, a seam at a time. Of the points that
  * 12 virtual maize as splats lose nearly all are found. */
 #include "segment/sparse_tips.h"
 
@@ -13,35 +13,48 @@
 #include "segment/subset.h"
 
 enum {
-    FIT = 16,       /* kept neighbours that the plane is of */
-    LEAST = 8,      /* of them, at least */
-    LOOK = 64,      /* neighbours among which kept ones are looked for */
-    USUAL = 6,      /* nearest of them, whose own spacing is usual */
-    FOURTH = 4,     /* spacing: distance to the fourth kept one */
-    CLOSE = 8,      /* neighbours that tell voxel means, as in cloud/sampling.h */
-    BOX = 8,        /* edge of a box of points, in cells */
-    ENOUGH = 80000, /* points in boxes */
+    FIT = 16,        /* kept neighbours that the plane is of */
+    LEAST = 8,       /* of them, at least */
+    LOOK = 64,       /* neighbours among which kept ones are looked for */
+    TUBE = 192,      /* kept neighbours that a tube is told by at most, */
+    TUBE_LEAST = 24, /* and at least: */
+    TUBE_LOOK = 256, /* among so many */
+    USUAL = 6,       /* nearest of them, whose own spacing is usual */
+    FOURTH = 4,      /* spacing: distance to the fourth kept one */
+    CLOSE = 8,       /* neighbours that tell voxel means, as in cloud/sampling.h */
+    BOX = 8,         /* edge of a box of points, in cells */
+    ENOUGH = 80000,  /* points in boxes */
 };
 
 static const double flat = 0.35; /* thickness over length of what is before it, at most */
 /* Than usual, at most. At 2 a tip of a virtual maize that ends at four points a step was lost (29 mm); at 3 floaters are hardly more
  * (24 of 21 600 beside 96 virtual splats). */
 static const double farther = 3;
+/* In a plane that is as sharp as this (what its points are off it over the usual spacing) a point that far off in it is no chance. */
+static const double farthest = 4, sharp = 0.1;
+/* Floaters are anywhere: where none was dropped that far off, in what is usual of the nearest kept points, nearer ones are none. */
+static const double anywhere = 5;
 static const double off_rest = 3,
                     off_usual = 0.5; /* off the plane: in what the neighbours are off it, or in the usual spacing */
+
+/* Tubes: width over length of what is before the point, at most, and thickness over width, at least; spread of the points' distances
+ * from the axis over their mean, at most; how far off that mean (of it, and off_rest spreads) the point may be; how many of them may lie
+ * beyond it. */
+static const double slim = 0.6, round_across = 0.5, hollow = 0.55, off_mean = 0.15, end_share = 0.1;
 
 typedef struct tips {
     const plm_index *index;
     const float (*xyz)[3];
     const bool *drop;
+    bool no_floaters; /* see has_floaters */
 } tips;
 
 /* The nearest kept points to a point but itself, at most as many as wanted. */
 static size_t kept_near(const tips *t, uint32_t point, size_t wanted, uint32_t *row, float *squared)
 {
-    uint32_t near[LOOK];
-    float far[LOOK];
-    const size_t found = plm_index_neighbours(t->index, point, LOOK, near, far);
+    uint32_t near[TUBE_LOOK];
+    float far[TUBE_LOOK];
+    const size_t found = plm_index_neighbours(t->index, point, wanted > FIT ? TUBE_LOOK : LOOK, near, far);
     size_t kept = 0;
     for (size_t j = 0; j < found && kept < wanted; j++) {
         if (t->drop[near[j]]) continue;
@@ -65,23 +78,90 @@ static float usual_spacing(const tips *t, const uint32_t *row)
     return values ? value[values / 2] : 0;
 }
 
-/* Distance of a point from the plane of others, and how far (RMS) those are off it. False where they are no sheet: floaters hold
- * each other in all directions. */
-static bool off_plane(const tips *t, uint32_t point, const uint32_t *row, size_t rows, double *off, double *rest)
+/** Points, and their principal axes. */
+typedef struct shape {
+    double mean[3], value[3], axis[3][3]; /* value: sums of squares, the largest first */
+} shape;
+
+static shape shape_of(const tips *t, const uint32_t *row, size_t rows)
 {
-    double mean[3] = {0}, m[6] = {0}, value[3], axis[3][3], d[3];
+    shape s = {0};
+    double m[6] = {0}, d[3];
     for (size_t j = 0; j < rows; j++)
-        for (int a = 0; a < 3; a++) mean[a] += (double)t->xyz[row[j]][a] / (double)rows;
+        for (int a = 0; a < 3; a++) s.mean[a] += (double)t->xyz[row[j]][a] / (double)rows;
     for (size_t j = 0; j < rows; j++) {
-        for (int a = 0; a < 3; a++) d[a] = t->xyz[row[j]][a] - mean[a];
+        for (int a = 0; a < 3; a++) d[a] = t->xyz[row[j]][a] - s.mean[a];
         m[0] += d[0] * d[0], m[1] += d[0] * d[1], m[2] += d[0] * d[2];
         m[3] += d[1] * d[1], m[4] += d[1] * d[2], m[5] += d[2] * d[2];
     }
-    plm_eigen3(m, value, axis);
-    for (int a = 0; a < 3; a++) d[a] = t->xyz[point][a] - mean[a];
-    *off = fabs(plm_dot(d, axis[2]));
-    *rest = sqrt(fmax(value[2], 0) / (double)rows);
-    return value[2] < flat * flat * value[0];
+    plm_eigen3(m, s.value, s.axis);
+    return s;
+}
+
+/* Whether a point lies in the plane of the kept ones before it, within what those are off it. Not where they are no sheet:
+ * floaters hold each other in all directions. thin: whether those are hardly off it at all. */
+static bool goes_on_in_plane(const tips *t, uint32_t point, const uint32_t *row, size_t rows, double usual, bool *thin)
+{
+    const shape s = shape_of(t, row, rows);
+    double d[3];
+    for (int a = 0; a < 3; a++) d[a] = t->xyz[point][a] - s.mean[a];
+    const double off = fabs(plm_dot(d, s.axis[2])), rest = sqrt(fmax(s.value[2], 0) / (double)rows);
+    *thin = rest < sharp * usual;
+    return s.value[2] < flat * flat * s.value[0] && off < fmax(off_rest * rest, off_usual * usual);
+}
+
+/* Where a point lies against the longest axis. */
+static void place_on_axis(const tips *t, uint32_t point, const shape *s, double *along, double *off)
+{
+    double d[3];
+    for (int a = 0; a < 3; a++) d[a] = t->xyz[point][a] - s->mean[a];
+    *along = plm_dot(d, s->axis[0]);
+    *off = hypot(plm_dot(d, s->axis[1]), plm_dot(d, s->axis[2]));
+}
+
+/* Whether a point lies on the tube that the kept ones are of, behind its end: as far off its axis as they are. */
+static bool goes_on_as_tube(const tips *t, uint32_t point, const shape *s, const uint32_t *row, size_t rows)
+{
+    double along, off, mean = 0, squares = 0;
+    size_t beyond = 0;
+    place_on_axis(t, point, s, &along, &off);
+    for (size_t j = 0; j < rows; j++) {
+        double other, radius;
+        place_on_axis(t, row[j], s, &other, &radius);
+        beyond += along > 0 ? other > along : other < along;
+        mean += radius / (double)rows;
+        squares += radius * radius / (double)rows;
+    }
+    const double spread = sqrt(fmax(squares - mean * mean, 0));
+    return (double)beyond < end_share * (double)rows && spread < hollow * mean &&
+           fabs(off - mean) < off_rest * spread + off_mean * mean;
+}
+
+/* Enough kept neighbours to tell the tube by, if they are of one: several times longer than it is wide, and about as wide across. */
+static bool goes_on_in_tube(const tips *t, uint32_t point)
+{
+    uint32_t row[TUBE];
+    float squared[TUBE];
+    const size_t found = kept_near(t, point, TUBE, row, squared);
+    for (size_t rows = TUBE_LEAST; rows <= found; rows *= 2) {
+        const shape s = shape_of(t, row, rows);
+        if (s.value[1] < slim * slim * s.value[0] && s.value[2] > round_across * round_across * s.value[1])
+            return goes_on_as_tube(t, point, &s, row, rows);
+    }
+    return false;
+}
+
+/* Whether some of what was dropped lies far from all that was kept. Scanners without noise leave no such points, but the hidden sides
+ * of thin petioles that they see here and there are dropped. */
+static bool has_floaters(const tips *t, const uint32_t *dropped, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row[FIT];
+        float squared[FIT];
+        const size_t rows = kept_near(t, dropped[i], FIT, row, squared);
+        if (rows < LEAST || sqrt((double)squared[0]) > anywhere * sqrt((double)usual_spacing(t, row))) return true;
+    }
+    return false;
 }
 
 static bool goes_on(const tips *t, uint32_t point)
@@ -91,9 +171,12 @@ static bool goes_on(const tips *t, uint32_t point)
     const size_t rows = kept_near(t, point, FIT, row, squared);
     if (rows < LEAST) return false;
     const double usual = sqrt((double)usual_spacing(t, row));
-    if (!(sqrt((double)squared[FOURTH - 1]) < farther * usual)) return false;
-    double off, rest;
-    return off_plane(t, point, row, rows, &off, &rest) && off < fmax(off_rest * rest, off_usual * usual);
+    const double far = sqrt((double)squared[FOURTH - 1]);
+    if (!(far < farthest * usual)) return false;
+    bool thin;
+    const bool in_plane = goes_on_in_plane(t, point, row, rows, usual, &thin);
+    if (!(far < farther * usual)) return in_plane && thin;
+    return in_plane || t->no_floaters || goes_on_in_tube(t, point);
 }
 
 plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t count, const bool *drop, bool *tip,
@@ -103,12 +186,13 @@ plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t
     uint32_t *dropped = plm_scratch_take(&scratch, count, sizeof *dropped);
     bool *back = plm_scratch_take(&scratch, count, sizeof *back);
     bool *still = plm_scratch_take(&scratch, count, sizeof *still);
-    const tips t = {index, xyz, still};
+    tips t = {index, xyz, still, false};
     size_t left = 0, seam = 1;
     for (uint32_t i = 0; !scratch.failed && i < count; i++) {
         still[i] = drop[i];
         if (drop[i]) dropped[left++] = i;
     }
+    if (left) t.no_floaters = !has_floaters(&t, dropped, left);
     while (seam && left) {
         const int64_t rows = (int64_t)left;
 #pragma omp parallel for schedule(dynamic, 64)

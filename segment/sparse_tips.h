@@ -1,4 +1,4 @@
-/* segment/sparse_tips.h: a leaf's sparse tip is no ghost. Internal. */
+/* segment/sparse_tips.h: a leaf's sparse tip, or a stem's sparse foot, is no ghost. Internal. */
 #ifndef PLANTIMETER_SEGMENT_SPARSE_TIPS_H
 #define PLANTIMETER_SEGMENT_SPARSE_TIPS_H
 
@@ -7,7 +7,8 @@
 #include "segment/segment.h"
 
 /** Finds what was dropped (drop[i]) though it goes on where the kept surface ends: less than three times as far off as its points there
- * are from each other, and in its plane: tip[i], of count points. Not for voxel means, whose ghosts leave rims just so. index is
+ * are from each other (four times where its plane is sharp), and in its plane or on its tube, or anywhere where no dropped point is far off
+ * all that was kept: tip[i], of count points. Not for voxel means, whose ghosts leave rims just so. index is
  * over the points of xyz, kept and dropped. PLM_E_MEMORY only. */
 plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t count, const bool *drop, bool *tip,
                            plm_error *error);

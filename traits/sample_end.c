@@ -11,13 +11,16 @@ enum {
     MOST = 300, /* heights: more stand for parts of the plant further down */
     STEPS = 96, /* of the grid of ends */
     SMOOTH_POWERS = 4,
+    CORNER_POWERS = 5,
     NOISY_POWERS = 2, /* whole numbers: their blurred densities have closed forms */
     PARTS = 4,
     MOST_WEIGHTS = NOISY_POWERS * PARTS
 };
-_Static_assert((int)MOST_WEIGHTS >= (int)SMOOTH_POWERS, "weights of one end");
+_Static_assert((int)MOST_WEIGHTS >= (int)SMOOTH_POWERS && (int)MOST_WEIGHTS >= (int)CORNER_POWERS,
+               "weights of one end");
 
-static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5};
+static const double smooth_power[SMOOTH_POWERS] = {1.0, 1.5, 2.0, 2.5},
+                    corner_power[CORNER_POWERS] = {1.0, 1.25, 1.5, 1.75, 2.0};
 static const double part_of_along[PARTS] = {0.25, 0.5, 0.75, 1};
 static const double below_top = 4.0; /* SD of noise below the highest point from which the end is sought ... */
 
@@ -29,12 +32,15 @@ static int descending(const void *a, const void *b)
     return (x->along > y->along) - (x->along < y->along);
 }
 
-/* Log likelihood, up to a constant, of the heights above the last one (height[used]) for an end and a power. */
-static double smooth_likelihood(const plm_height *height, size_t used, double end, double power)
+/* Log likelihoods, up to a constant, of the heights above the last one (height[used]) for an end and each power. */
+static void smooth_likelihood(const plm_height *height, size_t used, double end, const double *power, size_t powers,
+                              double *out)
 {
-    double sum = (double)used * (log(power) - power * log(end - height[used].at));
-    for (size_t i = 0; i < used; i++) sum += (power - 1) * log(end - height[i].at);
-    return sum;
+    double sum = 0;
+    for (size_t i = 0; i < used; i++) sum += log(end - height[i].at);
+    const double depth = log(end - height[used].at);
+    for (size_t p = 0; p < powers; p++)
+        out[p] = (double)used * (log(power[p]) - power[p] * depth) + (power[p] - 1) * sum;
 }
 
 /* Mean of max(y + n, 0)^k over standard normal n, for k = 0, 1, 2: the blurred powers, and each one's integral but for a
@@ -131,11 +137,25 @@ size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *
         const double at = first + ((double)j + 0.5) * step;
         for (int p = 0; spread > 0 && p < parts; p++)
             noisy_likelihood(height, used, at, part_of_along[p], &weight[j][NOISY_POWERS * p]);
-        for (size_t p = 0; !(spread > 0) && p < SMOOTH_POWERS; p++)
-            weight[j][p] = smooth_likelihood(height, used, at, smooth_power[p]);
+        if (!(spread > 0)) smooth_likelihood(height, used, at, smooth_power, SMOOTH_POWERS, weight[j]);
     }
     grid_moments((const double(*)[MOST_WEIGHTS])weight, spread > 0 ? (size_t)(NOISY_POWERS * parts) : SMOOTH_POWERS,
                  first, step, end, std_error);
     *depth = fmax(*end - height[used].at, 0);
     return used;
+}
+
+void plm_end_of_corner(plm_height *height, size_t count, size_t used, double *end, double *std_error)
+{
+    qsort(height, count, sizeof *height, descending);
+    const size_t last = used < count - 1 ? used : count - 1;
+    const double step = (height[0].at - height[last].at) / STEPS;
+    *end = height[0].at;
+    *std_error = 0;
+    if (!(step > 0)) return;
+    double weight[STEPS][MOST_WEIGHTS];
+    for (size_t j = 0; j < STEPS; j++)
+        smooth_likelihood(height, last, height[0].at + ((double)j + 0.5) * step, corner_power, CORNER_POWERS,
+                          weight[j]);
+    grid_moments((const double(*)[MOST_WEIGHTS])weight, CORNER_POWERS, height[0].at, step, end, std_error);
 }

@@ -249,8 +249,9 @@ static void sparse_tips_are_no_floaters(void **unused)
     plm_virtual_plant_free(&grown);
 }
 
-/* The last 28 mm of this maize's highest leaf have 24 points, some three times as far apart as those before them. */
-static void a_tip_may_be_three_times_as_sparse(void **unused)
+/* The last 28 mm of this maize's highest leaf have 24 points, some three times as far apart as those before them, and the lowest 37 mm
+ * of its stem 80, which lie on a tube, in no plane. */
+static void a_tip_or_a_foot_may_be_three_times_as_sparse(void **unused)
 {
     (void)unused;
     plm_error error = {0};
@@ -263,14 +264,37 @@ static void a_tip_may_be_three_times_as_sparse(void **unused)
     const plm_cloud *cloud = &scan.cloud;
     bool *keep = malloc(cloud->count), *tip = malloc(cloud->count);
     assert_ok(plm_clean_but_tips(cloud, NULL, keep, tip, NULL, &error));
-    float top = -INFINITY, found = -INFINITY;
+    float top = -INFINITY, found = -INFINITY, base = INFINITY, lowest = INFINITY;
     for (size_t i = 0; i < cloud->count; i++) {
         if (cloud->label[i] == PLM_LABEL_OTHER) continue;
-        top = fmaxf(top, cloud->xyz[i][2]);
-        if (keep[i] || tip[i]) found = fmaxf(found, cloud->xyz[i][2]);
+        top = fmaxf(top, cloud->xyz[i][2]), base = fminf(base, cloud->xyz[i][2]);
+        if (keep[i] || tip[i]) found = fmaxf(found, cloud->xyz[i][2]), lowest = fminf(lowest, cloud->xyz[i][2]);
     }
-    print_message("%.1f mm of the top lost\n", 1e3 * (double)(top - found));
-    assert_true(top - found < 5e-3F);
+    print_message("%.1f mm of the top lost, %.1f mm of the foot\n", 1e3 * (double)(top - found),
+                  1e3 * (double)(lowest - base));
+    assert_true(top - found < 5e-3F && lowest - base < 2e-3F);
+    free(keep);
+    free(tip);
+    plm_scan_free(&scan);
+    plm_virtual_plant_free(&grown);
+}
+
+/* Nothing far off was dropped of this rosette, so the 19 points of its petioles' undersides that were are no floaters. */
+static void a_scan_without_floaters_loses_nothing(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_virtual_plant grown;
+    plm_scan scan;
+    const plm_scan_options options = {.scanner = PLM_SCANNER_DOME, .seed = 40005, .points = 45000};
+    assert_ok(plm_plant_grow("arabidopsis", &(plm_plant_options){.seed = 40005}, &grown, &error));
+    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    bool *keep = malloc(scan.cloud.count), *tip = malloc(scan.cloud.count);
+    assert_ok(plm_clean_but_tips(&scan.cloud, NULL, keep, tip, NULL, &error));
+    size_t dropped_of = 0, lost = 0;
+    for (size_t i = 0; i < scan.cloud.count; i++) dropped_of += !keep[i], lost += !keep[i] && !tip[i];
+    print_message("%zu of %zu dropped, %zu lost\n", dropped_of, scan.cloud.count, lost);
+    assert_true(dropped_of > 5 && lost == 0);
     free(keep);
     free(tip);
     plm_scan_free(&scan);
@@ -370,7 +394,8 @@ int main(void)
         cmocka_unit_test(a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays),
         cmocka_unit_test(thin_stems_and_sparse_regions_stay),
         cmocka_unit_test(sparse_tips_are_no_floaters),
-        cmocka_unit_test(a_tip_may_be_three_times_as_sparse),
+        cmocka_unit_test(a_scan_without_floaters_loses_nothing),
+        cmocka_unit_test(a_tip_or_a_foot_may_be_three_times_as_sparse),
         cmocka_unit_test(what_goes_on_in_the_plane_is_a_tip),
         cmocka_unit_test(voxel_means_are_told_in_boxes),
         cmocka_unit_test(ground_is_neither_judged_nor_counted),

@@ -1,0 +1,134 @@
+/* traits/hull_corners.c: the hull's volume behind its corners. In first order a hull grows by the area of each face times how far it
+ * moves (the surface area measure of H. Minkowski, 1903), which the points about its corners tell. Corners that lie near each other are of
+ * one tip or rim, and err alike; others on their own. Condition: the error is that of the gaps behind corners, some 0.3 of them. */
+#include "traits/hull_corners.h"
+
+#include "cloud/linear.h"
+#include "traits/sample_end.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    AROUND = 120,     /* points about a corner */
+    TELLING = 60,     /* of them, that tell its end along a normal; */
+    ONE_TIP = 60,     /* corners within the distance of so many points are of one tip */
+    MOST_FACES = 1000 /* that are looked at, the largest */
+};
+
+typedef struct face {
+    double area, normal[3];
+    uint32_t number;
+} face;
+
+/** A corner's part in what the hull lacks. */
+typedef struct corner_gain {
+    double gain, error;
+} corner_gain;
+
+static int larger_face(const void *a, const void *b)
+{
+    const face *x = a, *y = b;
+    if (x->area != y->area) return x->area > y->area ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+/* All faces, the largest first. Gives their area. */
+static double sort_faces(const plm_mesh *hull, face *of)
+{
+    double area = 0;
+    for (size_t f = 0; f < hull->triangle_count; f++) {
+        const uint32_t *t = hull->triangle[f];
+        double side[2][3];
+        for (int k = 0; k < 3; k++)
+            for (int s = 0; s < 2; s++) side[s][k] = hull->vertex[t[s + 1]][k] - hull->vertex[t[0]][k];
+        plm_cross(side[0], side[1], of[f].normal);
+        of[f].area = 0.5 * plm_normalise(of[f].normal);
+        of[f].number = (uint32_t)f;
+        area += of[f].area;
+    }
+    qsort(of, hull->triangle_count, sizeof *of, larger_face);
+    return area;
+}
+
+static void query_of(const double vertex[3], float query[3])
+{
+    for (int k = 0; k < 3; k++) query[k] = (float)vertex[k];
+}
+
+/* How far the surface goes on behind a corner along a normal. */
+static corner_gain behind(const double vertex[3], const double normal[3], const plm_index *index, const float (*xyz)[3])
+{
+    float query[3];
+    uint32_t row[AROUND];
+    plm_height height[AROUND];
+    query_of(vertex, query);
+    const size_t found = plm_index_nearest(index, query, AROUND, row, NULL);
+    for (size_t i = 0; i < found; i++) {
+        double offset[3];
+        for (int k = 0; k < 3; k++) offset[k] = (double)xyz[row[i]][k] - vertex[k];
+        height[i] = (plm_height){plm_dot(offset, normal), 0, 0};
+    }
+    corner_gain gain = {0};
+    if (found < 2) return gain;
+    plm_end_of_corner(height, found, TELLING, &gain.gain, &gain.error);
+    gain.gain = fmax(gain.gain, 0);
+    return gain;
+}
+
+/* Sums the errors of corners that are of one tip, which are those of the same points, and the squares of the sums. gain: one a
+ * vertex, overwritten. */
+static double squares_of_tips(const plm_mesh *hull, const plm_index *index, corner_gain *gain)
+{
+    double squares = 0;
+    for (size_t v = 0; v < hull->vertex_count; v++) {
+        if (!(gain[v].error > 0)) continue;
+        float query[3], squared[ONE_TIP];
+        query_of(hull->vertex[v], query);
+        const size_t found = plm_index_nearest(index, query, ONE_TIP, NULL, squared);
+        const double reach = found ? sqrt((double)squared[found - 1]) : 0;
+        double sum = 0;
+        for (size_t w = v; w < hull->vertex_count; w++) {
+            if (w != v && plm_distance(hull->vertex[v], hull->vertex[w]) > reach) continue;
+            sum += gain[w].error;
+            gain[w].error = 0;
+        }
+        squares += sum * sum;
+    }
+    return squares;
+}
+
+plm_status plm_hull_corners(const plm_mesh *hull, const plm_index *index, const float (*xyz)[3], double *lacking,
+                            double *std_error, plm_error *error)
+{
+    const size_t faces = hull->triangle_count < MOST_FACES ? hull->triangle_count : MOST_FACES;
+    face *of = plm_alloc(hull->triangle_count, sizeof *of, error);
+    corner_gain(*part)[3] = plm_alloc(faces, sizeof *part, error);
+    corner_gain *gain = plm_alloc(hull->vertex_count, sizeof *gain, error);
+    const plm_status status = of && part && gain ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) {
+        const double area = sort_faces(hull, of);
+        double seen = 0;
+#pragma omp parallel for schedule(dynamic, 16)
+        for (size_t f = 0; f < faces; f++)
+            for (int c = 0; c < 3; c++)
+                part[f][c] = behind(hull->vertex[hull->triangle[of[f].number][c]], of[f].normal, index, xyz);
+        memset(gain, 0, hull->vertex_count * sizeof *gain);
+        *lacking = 0;
+        for (size_t f = 0; f < faces; f++) {
+            seen += of[f].area;
+            for (int c = 0; c < 3; c++) {
+                *lacking += of[f].area / 3 * part[f][c].gain;
+                gain[hull->triangle[of[f].number][c]].error += of[f].area / 3 * part[f][c].error;
+            }
+        }
+        const double all = seen > 0 ? area / seen : 1;
+        *lacking *= all;
+        *std_error = all * sqrt(squares_of_tips(hull, index, gain));
+    }
+    plm_free(of);
+    plm_free(part);
+    plm_free(gain);
+    return status;
+}

@@ -1,0 +1,16 @@
+/* traits/hull_corners.h: what a convex hull of sampled points lacks of that of their surface, at its corners. Internal. */
+#ifndef PLANTIMETER_TRAITS_HULL_CORNERS_H
+#define PLANTIMETER_TRAITS_HULL_CORNERS_H
+
+#include "cloud/neighbours.h"
+
+/** The volume that the hull of points of a surface, sampled without noise, lacks, and its standard error (m3).
+ * hull   closed, of the points, in their frame
+ * index  over xyz
+ *
+ * A face of the hull moves outwards by how far the surface goes on, along the face's normal, behind the points at each of its three
+ * corners (plm_end_of_corner of the points about them). Of very many faces the largest tell for all. PLM_E_MEMORY. */
+plm_status plm_hull_corners(const plm_mesh *hull, const plm_index *index, const float (*xyz)[3], double *lacking,
+                            double *std_error, plm_error *error);
+
+#endif
