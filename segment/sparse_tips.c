@@ -1,7 +1,7 @@
 /* segment/sparse_tips.c: scanners and fits to photographs see the tip of a leaf less often than its blade, so points lie two to
  * five times as far apart there, as floaters do that come near a plant. But a tip is led to step by step, in the plane of what
- * is before it, and the sparse foot of a stem on the tube: so what was dropped is looked at from the kept surface on, a seam at a time. Of the points that
- * 12 virtual maize as splats lose nearly all are found. */
+ * is before it, and the sparse foot of a stem on the tube: so what was dropped is looked at from the kept surface on, a seam at
+ * a time. Of the points that 12 virtual maize as splats lose nearly all are found. */
 #include "segment/sparse_tips.h"
 
 #include <math.h>
@@ -30,10 +30,10 @@ static const double flat = 0.35; /* thickness over length of what is before it, 
 /* Than usual, at most. At 2 a tip of a virtual maize that ends at four points a step was lost (29 mm); at 3 floaters are hardly more
  * (24 of 21 600 beside 96 virtual splats). */
 static const double farther = 3;
-/* In a plane that is as sharp as this (what its points are off it over the usual spacing) a point that far off in it is no chance. */
-static const double farthest = 4, sharp = 0.1;
+static const double farthest = 4; /* the same in a plane, where there are no floaters */
 /* Floaters are anywhere: where none was dropped that far off, in what is usual of the nearest kept points, nearer ones are none. */
-static const double anywhere = 5;
+static const double anywhere = 5, rare = 0.002,
+                    noise_free = 0.05; /* dropped points, of all; noise over usual spacing */
 static const double off_rest = 3,
                     off_usual = 0.5; /* off the plane: in what the neighbours are off it, or in the usual spacing */
 
@@ -46,7 +46,7 @@ typedef struct tips {
     const plm_index *index;
     const float (*xyz)[3];
     const bool *drop;
-    bool no_floaters; /* see has_floaters */
+    double spared; /* usual spacing from which on what lies near is kept; INFINITY: none (see spared_spacing) */
 } tips;
 
 /* The nearest kept points to a point but itself, at most as many as wanted. */
@@ -99,14 +99,13 @@ static shape shape_of(const tips *t, const uint32_t *row, size_t rows)
 }
 
 /* Whether a point lies in the plane of the kept ones before it, within what those are off it. Not where they are no sheet:
- * floaters hold each other in all directions. thin: whether those are hardly off it at all. */
-static bool goes_on_in_plane(const tips *t, uint32_t point, const uint32_t *row, size_t rows, double usual, bool *thin)
+ * floaters hold each other in all directions. */
+static bool goes_on_in_plane(const tips *t, uint32_t point, const uint32_t *row, size_t rows, double usual)
 {
     const shape s = shape_of(t, row, rows);
     double d[3];
     for (int a = 0; a < 3; a++) d[a] = t->xyz[point][a] - s.mean[a];
     const double off = fabs(plm_dot(d, s.axis[2])), rest = sqrt(fmax(s.value[2], 0) / (double)rows);
-    *thin = rest < sharp * usual;
     return s.value[2] < flat * flat * s.value[0] && off < fmax(off_rest * rest, off_usual * usual);
 }
 
@@ -151,17 +150,21 @@ static bool goes_on_in_tube(const tips *t, uint32_t point)
     return false;
 }
 
-/* Whether some of what was dropped lies far from all that was kept. Scanners without noise leave no such points, but the hidden sides
- * of thin petioles that they see here and there are dropped. */
-static bool has_floaters(const tips *t, const uint32_t *dropped, size_t count)
+/* Scanners without noise see the hidden sides of thin petioles here and there, which are dropped. A few dropped points of which none lies
+ * far from all that was kept are no floaters, as those are anywhere. Gives the spacing against which the noise is none; INFINITY:
+ * there may be floaters. */
+static double spared_spacing(const tips *t, size_t count, const uint32_t *dropped, size_t left)
 {
-    for (size_t i = 0; i < count; i++) {
+    double noise;
+    plm_error ignored;
+    if (left == 0 || (double)left > rare * (double)count) return INFINITY;
+    for (size_t i = 0; i < left; i++) {
         uint32_t row[FIT];
         float squared[FIT];
         const size_t rows = kept_near(t, dropped[i], FIT, row, squared);
-        if (rows < LEAST || sqrt((double)squared[0]) > anywhere * sqrt((double)usual_spacing(t, row))) return true;
+        if (rows < LEAST || sqrt((double)squared[0]) > anywhere * sqrt((double)usual_spacing(t, row))) return INFINITY;
     }
-    return false;
+    return plm_noise_measure(t->index, t->xyz, count, &noise, &ignored) == PLM_OK ? noise / noise_free : INFINITY;
 }
 
 static bool goes_on(const tips *t, uint32_t point)
@@ -173,10 +176,9 @@ static bool goes_on(const tips *t, uint32_t point)
     const double usual = sqrt((double)usual_spacing(t, row));
     const double far = sqrt((double)squared[FOURTH - 1]);
     if (!(far < farthest * usual)) return false;
-    bool thin;
-    const bool in_plane = goes_on_in_plane(t, point, row, rows, usual, &thin);
-    if (!(far < farther * usual)) return in_plane && thin;
-    return in_plane || t->no_floaters || goes_on_in_tube(t, point);
+    const bool in_plane = goes_on_in_plane(t, point, row, rows, usual), spared = usual > t->spared;
+    if (!(far < farther * usual)) return in_plane && spared;
+    return in_plane || spared || goes_on_in_tube(t, point);
 }
 
 plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t count, const bool *drop, bool *tip,
@@ -186,13 +188,13 @@ plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t
     uint32_t *dropped = plm_scratch_take(&scratch, count, sizeof *dropped);
     bool *back = plm_scratch_take(&scratch, count, sizeof *back);
     bool *still = plm_scratch_take(&scratch, count, sizeof *still);
-    tips t = {index, xyz, still, false};
+    tips t = {index, xyz, still, INFINITY};
     size_t left = 0, seam = 1;
     for (uint32_t i = 0; !scratch.failed && i < count; i++) {
         still[i] = drop[i];
         if (drop[i]) dropped[left++] = i;
     }
-    if (left) t.no_floaters = !has_floaters(&t, dropped, left);
+    t.spared = spared_spacing(&t, count, dropped, left);
     while (seam && left) {
         const int64_t rows = (int64_t)left;
 #pragma omp parallel for schedule(dynamic, 64)

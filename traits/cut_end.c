@@ -89,7 +89,7 @@ static void gather(const double (*xyz)[3], size_t count, const plm_cut_tube *tub
 {
     size_t below = 0, seen = 0;
     for (size_t i = 0; i < count; i++) below += own[i] <= e->top;
-    const size_t stride = (below + MOST_POINTS - 1) / MOST_POINTS;
+    const size_t stride = below > MOST_POINTS ? (below + MOST_POINTS - 1) / MOST_POINTS : 1;
     e->count = 0;
     for (size_t i = 0; i < count; i++) {
         for (int s = 0; s < ENDS; s++) e->shift[s] += (own[i] - place_of(xyz[i], tube, e->normal[s])) / (double)count;
@@ -146,7 +146,7 @@ static double lowest_of_rim(const evidence *e, int which, const plm_cut_tube *tu
     if (which == TIP) return tube->origin[2] + rim * tube->axis[2];
     const double *normal = e->normal[which], steep = tube->axis[2] / plm_dot(tube->axis, normal);
     const double fall[3] = {-steep * normal[0], -steep * normal[1], 1 - steep * normal[2]};
-    return tube->origin[2] + rim * tube->axis[2] - (tube->radius + tube->taper * rim) * plm_norm(fall);
+    return tube->origin[2] + rim * tube->axis[2] - fmax(tube->radius + tube->taper * rim, 0) * plm_norm(fall);
 }
 
 /** Moments of the posterior. */

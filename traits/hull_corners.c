@@ -63,16 +63,19 @@ static corner_gain behind(const double vertex[3], const double normal[3], const 
     float query[3];
     uint32_t row[AROUND];
     plm_height height[AROUND];
+    size_t places = 0;
     query_of(vertex, query);
     const size_t found = plm_index_nearest(index, query, AROUND, row, NULL);
-    for (size_t i = 0; i < found; i++) {
+    for (size_t i = 0; i < found;
+         i++) { /* points that were written twice are next to each other, and tell nothing more */
+        if (i && memcmp(xyz[row[i]], xyz[row[i - 1]], sizeof xyz[row[i]]) == 0) continue;
         double offset[3];
         for (int k = 0; k < 3; k++) offset[k] = (double)xyz[row[i]][k] - vertex[k];
-        height[i] = (plm_height){plm_dot(offset, normal), 0, 0};
+        height[places++] = (plm_height){plm_dot(offset, normal), 0, 0};
     }
     corner_gain gain = {0};
-    if (found < 2) return gain;
-    plm_end_of_corner(height, found, TELLING, &gain.gain, &gain.error);
+    if (places < 2) return gain;
+    plm_end_of_corner(height, places, TELLING, &gain.gain, &gain.error);
     gain.gain = fmax(gain.gain, 0);
     return gain;
 }
@@ -90,6 +93,7 @@ static double squares_of_tips(const plm_mesh *hull, const plm_index *index, corn
         const double reach = found ? sqrt((double)squared[found - 1]) : 0;
         double sum = 0;
         for (size_t w = v; w < hull->vertex_count; w++) {
+            if (!(gain[w].error > 0)) continue;
             if (w != v && plm_distance(hull->vertex[v], hull->vertex[w]) > reach) continue;
             sum += gain[w].error;
             gain[w].error = 0;

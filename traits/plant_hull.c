@@ -1,9 +1,9 @@
 /* traits/plant_hull.c: volume and area of the plant's convex hull. Sampling makes a hull too small, noise makes it too large:
  * points near the raw hull are projected onto local quadrics first, and what is left of both is corrected by how much a
  * random half of the points loses (a deficit that grows as n^-0.58, between wedge tips and smooth rims, wants the
- * Richardson factor 2.0), in scans without noise by what its corners lack as well (traits/hull_corners.c), and by noise times area. What nothing supports (ghosts) is peeled off first. The factors for
- * noisy clouds are fits over virtual scans (see factors_of). Condition: 1 in
- * volume; for a sheet the volume is noise over thickness, which the standard error shows. */
+ * Richardson factor 2.0), in scans without noise by what its corners lack as well (traits/hull_corners.c), and by noise times
+ * area. What nothing supports (ghosts) is peeled off first. The factors for noisy clouds are fits over virtual scans (see
+ * factors_of). Condition: 1 in volume; for a sheet the volume is noise over thickness, which the standard error shows. */
 #include "traits/extreme.h"
 #include "traits/families.h"
 #include "traits/hull_corners.h"
@@ -221,11 +221,13 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
     const double share = sigma * per_volume; /* of the volume, in noise */
     const double thickened = f.thin * share * shell;
     const double voxels = scene->sampling.pitch * (pixel_inset - pixel_outset * scene->sampling.gathering) * m->area;
+    /* Half of what the two ways to tell what a hull without noise lacks are apart. */
+    const double apart = f.corners > 0 ? f.corners * m->lacking - f.deficit * deficit : 0;
     scene->hull_volume =
         m->volume + f.corners * m->lacking + f.deficit * deficit - rims * (f.noise * shell + thickened) + disc + voxels;
-    scene->hull_volume_error =
-        sqrt(pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) + pow(thin_error * rims * thickened, 2) +
-             disc * disc + (noisy ? 0 : m->half_volume_sd * m->half_volume_sd) + pow(m->lacking_error, 2));
+    scene->hull_volume_error = sqrt(
+        pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) + pow(thin_error * rims * thickened, 2) +
+        disc * disc + (noisy ? 0 : m->half_volume_sd * m->half_volume_sd) + pow(m->lacking_error, 2) + apart * apart);
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
     const double area_deficit = m->area - m->half_area, added = rims * shell * per_volume;
     scene->hull_area =

@@ -31,8 +31,8 @@ double plm_height_spread(const plm_height *height);
  * an SD and more, the end comes out by up to 0.9 SD too far: within PLM_END_DEPTH it looks like a tip with less. */
 size_t plm_end_of_sample(plm_height *height, size_t count, double *end, double *std_error, double *depth);
 
-/** The same for heights without noise of points about one corner of a surface, from so many as `used` of the highest (fewer where
- * there are fewer), for powers from 1 to 2: neither the highest that it is to be added to nor its power is chosen among many. */
+/** The same for heights without noise of points about one corner of a surface (count of them, at least 1), from so many as `used` of
+ * the highest and for powers from 1 to 2. */
 void plm_end_of_corner(plm_height *height, size_t count, size_t used, double *end, double *std_error);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
+#include "cloud/random.h"
 #include "traits/cut_end.h"
 #include "traits/tube_fit.h"
 
@@ -14,8 +15,9 @@
 #include <string.h>
 
 enum {
-    FIRST = 60,        /* points: how wide the foot is */
-    FEWEST = 40,       /* points of a foot */
+    FIRST = 60,  /* points: how wide the foot is */
+    FEWEST = 40, /* points of a foot */
+    MOST_POINTS = 20000,
     TUBE_POINTS = 600, /* that the tube is fitted to, at most */
     LOWEST = 5,        /* point from which on the foot's height counts: lower ones may be stray */
     WINDOWS = 2,
@@ -37,6 +39,11 @@ static const double widest = 3;
 static const double round_error = 0.04, noise_error = 0.2;
 /* An end that is less sure than what was seen, and than this part of the radius, tells nothing. */
 static const double told = 0.2;
+/* Heights alone know their error from points that are taken for an end that narrows. Where it is so much less than that of the tube's
+ * end they lie close, and tell it all the same. */
+static const double surer = 4;
+/* The foot's part of the height, at most; and change of its radius by length. */
+static const double tallest = 0.5, most_taper = 0.1;
 
 /** The points of the foot, the lowest first. */
 typedef struct foot_points {
@@ -52,30 +59,42 @@ static int compare_heights(const void *a, const void *b)
     return 0;
 }
 
-/* The points up to a height, in place of what foot held. */
+/* A number of a point, of its coordinates: the same in any order. */
+static uint64_t number_of(const float point[3])
+{
+    uint32_t bits[3];
+    memcpy(bits, point, sizeof bits);
+    return plm_mix(bits[0] ^ plm_mix(bits[1] ^ plm_mix(bits[2])));
+}
+
+/* The points up to a height, in place of what foot held; where there are many more than tell it, about MOST_POINTS of them. */
 static plm_status take_below(const float (*xyz)[3], size_t count, double height, foot_points *foot, plm_error *error)
 {
-    size_t found = 0;
+    size_t found = 0, taken = 0;
     for (size_t i = 0; i < count; i++) found += xyz[i][2] <= height;
+    const size_t stride = found > MOST_POINTS ? (found + MOST_POINTS - 1) / MOST_POINTS : 1;
+    for (size_t i = 0; stride > 1 && i < count; i++) taken += xyz[i][2] <= height && number_of(xyz[i]) % stride == 0;
+    if (stride > 1) found = taken;
     plm_free(foot->xyz);
     foot->count = 0;
     foot->xyz = plm_alloc(found, sizeof *foot->xyz, error);
     if (!foot->xyz) return PLM_E_MEMORY;
     for (size_t i = 0; i < count; i++) {
-        if (!(xyz[i][2] <= height)) continue;
+        if (!(xyz[i][2] <= height) || (stride > 1 && number_of(xyz[i]) % stride)) continue;
         for (int k = 0; k < 3; k++) foot->xyz[foot->count][k] = xyz[i][k];
         foot->count++;
     }
     qsort(foot->xyz, foot->count, sizeof *foot->xyz, compare_heights);
-    return PLM_OK;
+    return foot->count < FIRST ? plm_fail(error, PLM_E_DEGENERATE, "most points are in one place") : PLM_OK;
 }
 
-/* The height that the lowest points lie below. */
-static plm_status height_of_lowest(const float (*xyz)[3], size_t count, double *height, plm_error *error)
+/* The height that the lowest points lie below, and that of the highest. */
+static plm_status height_of_lowest(const float (*xyz)[3], size_t count, double *height, double *top, plm_error *error)
 {
     double *z = plm_alloc(count, sizeof *z, error);
     if (!z) return PLM_E_MEMORY;
-    for (size_t i = 0; i < count; i++) z[i] = xyz[i][2];
+    *top = -INFINITY;
+    for (size_t i = 0; i < count; i++) z[i] = xyz[i][2], *top = fmax(*top, z[i]);
     *height = plm_order_select(z, count, FIRST - 1);
     plm_free(z);
     return PLM_OK;
@@ -151,12 +170,15 @@ static size_t keep_on_tube(foot_points *foot, const plm_cut_tube *tube, double t
     return kept;
 }
 
-/* The foot within a window of so many radii, and its tube, found together. PLM_E_DEGENERATE: it is none. */
-static plm_status find_foot(const float (*xyz)[3], size_t count, double width, double radii, double noise,
+/* The foot within a window of so many radii, and its tube, found together, from the lowest points. most_height: of the window.
+ * PLM_E_DEGENERATE: it is none. */
+static plm_status find_foot(const float (*xyz)[3], size_t count, double radii, double noise, double most_height,
                             foot_points *foot, plm_tube *tube, plm_error *error)
 {
+    double width = width_of(foot);
     const double lowest = foot->xyz[LOWEST][2], first = foot->xyz[FIRST - 1][2], most = widest * fmax(width, noise);
     plm_status status = PLM_OK;
+    if (radii * width > most_height) return plm_fail(error, PLM_E_DEGENERATE, "the lowest points are no foot");
     for (int round = 0; round < ROUNDS && status == PLM_OK; round++) {
         const double height = fmax(lowest + radii * fmax(width, noise), first);
         status = take_below(xyz, count, height, foot, error);
@@ -170,7 +192,8 @@ static plm_status find_foot(const float (*xyz)[3], size_t count, double width, d
 
 static bool is_tube(const plm_tube *tube, const plm_cut_tube *cone)
 {
-    return cone->noise < most_noise * cone->radius && cone->axis[2] > upright && tube->coverage >= least_coverage &&
+    return cone->noise < most_noise * cone->radius && cone->axis[2] > upright && fabs(cone->taper) < most_taper &&
+           tube->coverage >= least_coverage &&
            tube->robust_sd < rough_radius * cone->radius + rough_noise * cone->noise;
 }
 
@@ -201,16 +224,18 @@ plm_status plm_stem_foot(const float (*xyz)[3], size_t count, plm_extreme *base,
     const plm_sampling *sampling = &base->sampling;
     const double noise = sampling->noise > PLM_NOISE_FREE * sampling->spacing ? sampling->noise : 0;
     foot_points foot = {0};
-    double first;
-    plm_status status = height_of_lowest(xyz, count, &first, error);
+    double first, top;
+    plm_status status = height_of_lowest(xyz, count, &first, &top, error);
     for (int w = 0; w < WINDOWS && status == PLM_OK && !*changed; w++) {
         plm_tube tube = {0};
         double end = NAN, std_error = NAN;
         status = take_below(xyz, count, first, &foot, error);
-        if (status == PLM_OK) status = find_foot(xyz, count, width_of(&foot), window[w], noise, &foot, &tube, error);
+        if (status == PLM_OK)
+            status = find_foot(xyz, count, window[w], noise, tallest * (top - first), &foot, &tube, error);
         if (status == PLM_OK) status = find_end(&foot, &tube, sampling, noise, &end, &std_error, error);
         if (status == PLM_E_DEGENERATE) status = PLM_OK;
-        if (!(std_error < fmax(base->std_error, told * tube.radius[0])) || isnan(end)) continue;
+        const double most_error = fmin(fmax(base->std_error, told * tube.radius[0]), surer * base->std_error);
+        if (isnan(end) || !(std_error < most_error)) continue;
         base->value = -end;
         base->std_error = std_error;
         *changed = true;

@@ -227,6 +227,7 @@ static bool start_at_circle(const problem *p, const plm_curve *start, const fit 
 {
     const double limit = 2.5 * at_axis->x[2 * p->basis];
     double matrix[9] = {0}, right[3] = {0};
+    if (!(limit > 0)) return false; /* all on the axis */
     for (size_t i = 0; i < p->count; i++) {
         double at[3], gap[3];
         plm_curve_point(start, plm_curve_foot(start, p->xyz[i]), at);

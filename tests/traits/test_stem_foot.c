@@ -148,6 +148,29 @@ static void what_is_no_foot_keeps_its_base(void **unused)
     memset(xyz, 0, sizeof xyz);
     base_of((const float(*)[3])xyz, 200, &changed);
     assert_false(changed);
+    for (count = 0; count < 200; count++) xyz[count][2] = (float)count; /* a line */
+    base_of((const float(*)[3])xyz, count, &changed);
+    assert_false(changed);
+    for (count = 0; count < 4000; count++) { /* three stems */
+        put_stem(&(stem){.radius = 1.5e-3, .length = 0.05, .points = 1}, &seed, &xyz[count]);
+        xyz[count][0] += (float)(0.04 * (double)(count % 3));
+    }
+    base_of((const float(*)[3])xyz, count, &changed);
+    assert_false(changed);
+}
+
+/* Where points lie so close that the lowest is the end, the end that a few hundred of them tell is not better. */
+static void a_dense_end_is_where_it_was_seen(void **unused)
+{
+    (void)unused;
+    enum { DENSE = 400000 };
+    float(*xyz)[3] = malloc(DENSE * sizeof *xyz);
+    uint64_t seed = 4;
+    bool changed;
+    assert_non_null(xyz);
+    put_stem(&(stem){.radius = 0.01, .length = 0.05, .points = DENSE}, &seed, xyz);
+    assert_near(base_of((const float(*)[3])xyz, DENSE, &changed), 0, 0.02e-3);
+    free(xyz);
 }
 
 int main(void)
@@ -155,7 +178,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_leaning_stem_ends_at_its_rim),   cmocka_unit_test(a_stem_that_is_cut_level_ends_there),
         cmocka_unit_test(noise_is_told_by_all_of_the_foot), cmocka_unit_test(order_and_a_floater_do_not_matter),
-        cmocka_unit_test(what_is_no_foot_keeps_its_base),
+        cmocka_unit_test(what_is_no_foot_keeps_its_base),   cmocka_unit_test(a_dense_end_is_where_it_was_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
