@@ -6,10 +6,10 @@
 
 #include "segment/segment.h"
 
-/** Finds what was dropped (drop[i]) though it goes on where the kept surface ends: less than three times as far off as its points there
- * are from each other, and in its plane or on its tube, or anywhere in scans without noise of which few
- * points were dropped, none of them far off: tip[i], of count points. Not for voxel means, whose ghosts leave rims just so. index is
- * over the points of xyz, kept and dropped. PLM_E_MEMORY only. */
+/** Finds what was dropped (drop[i]) though it goes on where the kept surface ends: less than three times as far off as its points
+ * there are from each other, and in its plane or on its tube, or anywhere in scans without noise of which few points were dropped,
+ * none of them far off: tip[i], of count points. Not for voxel means, whose ghosts leave rims just so. index is over the points of
+ * xyz, kept and dropped. PLM_E_MEMORY only. */
 plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t count, const bool *drop, bool *tip,
                            plm_error *error);
 
@@ -17,8 +17,7 @@ plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t
 plm_status plm_are_voxel_means(const float (*xyz)[3], size_t count, double cell, bool *answer, plm_error *error);
 
 /** As plm_clean, and tip[i] (count of cloud) is true for what it drops though it is a leaf's sparse tip, a stem's sparse foot,
- * or the like (plm_sparse_tips): true of none in clouds
- * of voxel means. Organs are better found without them, as the way along a sparse rim is no petiole. tip may be NULL. */
+ * or the like (plm_sparse_tips): true of none in clouds of voxel means. Organs are better found without them, as the way along a sparse rim is no petiole. tip may be NULL. */
 plm_status plm_clean_but_tips(const plm_cloud *cloud, const uint8_t *label, bool *keep, bool *tip, double *spacing,
                               plm_error *error);
 

@@ -5,6 +5,7 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
+#include "traits/sample_end.h"
 
 #include <math.h>
 #include <string.h>
@@ -99,33 +100,26 @@ static void gather(const double (*xyz)[3], size_t count, const plm_cut_tube *tub
     }
 }
 
-/* Integrals over y of the normal distribution: of the first order, and of the second. */
-static double first_integral(double y)
-{
-    return 0.5 * y * erfc(-y / sqrt(2)) + exp(-0.5 * y * y) / sqrt(2 * PLM_PI);
-}
-
-static double second_integral(double y)
-{
-    return 0.5 * (0.5 * (y * y + 1) * erfc(-y / sqrt(2)) + y * exp(-0.5 * y * y) / sqrt(2 * PLM_PI));
-}
-
 /* The tube's surface at a height above its end, per that far above it, blurred by noise; depth: over which it grows from nothing. */
 static double surface_at(double above, double noise, double depth)
 {
-    if (noise > 0 && depth > 0)
-        return noise * (first_integral(above / noise) - first_integral((above - depth) / noise)) / depth;
-    if (noise > 0) return 0.5 * erfc(-above / (noise * sqrt(2)));
-    return above < 0 ? 0 : above < depth ? above / depth : 1;
+    if (!(noise > 0)) return above < 0 ? 0 : above < depth ? above / depth : 1;
+    double begin[3], full[3];
+    plm_blurred_powers(above / noise, begin);
+    if (!(depth > 0)) return begin[0];
+    plm_blurred_powers((above - depth) / noise, full);
+    return noise * (begin[1] - full[1]) / depth;
 }
 
 /* Its integral up to a height. */
 static double surface_below(double above, double noise, double depth)
 {
-    if (noise > 0 && depth > 0)
-        return noise * noise * (second_integral(above / noise) - second_integral((above - depth) / noise)) / depth;
-    if (noise > 0) return noise * first_integral(above / noise);
-    return above < depth ? above * above / (2 * depth) : above - depth / 2;
+    if (!(noise > 0)) return above < depth ? above * above / (2 * depth) : above - depth / 2;
+    double begin[3], full[3];
+    plm_blurred_powers(above / noise, begin);
+    if (!(depth > 0)) return noise * begin[1];
+    plm_blurred_powers((above - depth) / noise, full);
+    return noise * noise * (begin[2] - full[2]) / (2 * depth);
 }
 
 /* How likely the points are, in logarithms, where the end is at a place and so much noise blurs it; range: of stray points. */

@@ -1,7 +1,8 @@
 /* traits/plant_height.c: heights of a plant, by the definitions that are in use side by side. Condition: 1 (a difference of
  * two heights); the standard errors come from gap, noise and spacing at both ends (traits/extreme.c), or at the base from the
- * soil's scatter (traits/soil_base.c) or the rim of the stem's foot (traits/stem_foot.c). No index over the cloud is built, and labels of organs play no part but where a low plant
- * may hide its base (traits/rosette_base.c); then organs are found for it. So height is the same whatever else is asked for. */
+ * soil's scatter (traits/soil_base.c) or the rim of the stem's foot (traits/stem_foot.c). No index over the cloud is built, and
+ * labels of organs play no part but where a low plant may hide its base (traits/rosette_base.c); then organs are found for it. So
+ * height is the same whatever else is asked for. */
 #include "cloud/voxel.h"
 #include "traits/extreme.h"
 #include "traits/families.h"

@@ -43,9 +43,8 @@ static void smooth_likelihood(const plm_height *height, size_t used, double end,
         out[p] = (double)used * (log(power[p]) - power[p] * depth) + (power[p] - 1) * sum;
 }
 
-/* Mean of max(y + n, 0)^k over standard normal n, for k = 0, 1, 2: the blurred powers, and each one's integral but for a
- * factor. Far below 0 the tail's leading term, as the closed form cancels. */
-static void blurred_powers(double y, double mean[3])
+/* Far below 0 the tail's leading term, as the closed form cancels. */
+void plm_blurred_powers(double y, double mean[3])
 {
     const double density = exp(-0.5 * y * y) / sqrt(2 * PLM_PI), below = 0.5 * erfc(-y / sqrt(2));
     if (y < -6) {
@@ -76,9 +75,9 @@ static void noisy_likelihood(const plm_height *height, size_t used, double end, 
     for (int power = 1; power <= NOISY_POWERS; power++) out[power - 1] = 0;
     for (size_t i = 0; i < used; i++) {
         const double spread = spread_of(&height[i], part);
-        if (spread != last) blurred_powers((end - height[used].at) / spread, all);
+        if (spread != last) plm_blurred_powers((end - height[used].at) / spread, all);
         last = spread;
-        blurred_powers((end - height[i].at) / spread, mean);
+        plm_blurred_powers((end - height[i].at) / spread, mean);
         for (int power = 1; power <= NOISY_POWERS; power++)
             out[power - 1] += log(power * mean[power - 1] / (spread * all[power]));
     }

@@ -19,6 +19,10 @@ typedef struct plm_height {
 /** SD of the noise that may be in a height: with all of what is there in part. */
 double plm_height_spread(const plm_height *height);
 
+/** Mean of max(y + n, 0)^k over standard normal n, for k = 0, 1, 2: a power blurred by noise, and the integral of the one before but for
+ * the factor 1 / k. */
+void plm_blurred_powers(double y, double mean[3]);
+
 /** Where heights of points of a surface would end if it were sampled without gaps and without noise.
  * height       count of them (at least 1), any order: sorted on return, highest first
  * end, std_error  out, mean and standard deviation of the posterior

@@ -6,7 +6,7 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
-#include "cloud/random.h"
+#include "cloud/subset.h"
 #include "traits/cut_end.h"
 #include "traits/tube_fit.h"
 
@@ -59,46 +59,41 @@ static int compare_heights(const void *a, const void *b)
     return 0;
 }
 
-/* A number of a point, of its coordinates: the same in any order. */
-static uint64_t number_of(const float point[3])
-{
-    uint32_t bits[3];
-    memcpy(bits, point, sizeof bits);
-    return plm_mix(bits[0] ^ plm_mix(bits[1] ^ plm_mix(bits[2])));
-}
-
 /* The points up to a height, in place of what foot held; where there are many more than tell it, about MOST_POINTS of them. */
 static plm_status take_below(const float (*xyz)[3], size_t count, double height, foot_points *foot, plm_error *error)
 {
-    size_t found = 0, taken = 0;
+    size_t found = 0;
     for (size_t i = 0; i < count; i++) found += xyz[i][2] <= height;
-    const size_t stride = found > MOST_POINTS ? (found + MOST_POINTS - 1) / MOST_POINTS : 1;
-    for (size_t i = 0; stride > 1 && i < count; i++) taken += xyz[i][2] <= height && number_of(xyz[i]) % stride == 0;
-    if (stride > 1) found = taken;
+    float(*all)[3] = plm_alloc(found, sizeof *all, error);
+    uint32_t *row = plm_alloc(found, sizeof *row, error);
     plm_free(foot->xyz);
     foot->count = 0;
-    foot->xyz = plm_alloc(found, sizeof *foot->xyz, error);
-    if (!foot->xyz) return PLM_E_MEMORY;
-    for (size_t i = 0; i < count; i++) {
-        if (!(xyz[i][2] <= height) || (stride > 1 && number_of(xyz[i]) % stride)) continue;
-        for (int k = 0; k < 3; k++) foot->xyz[foot->count][k] = xyz[i][k];
-        foot->count++;
+    foot->xyz = NULL;
+    plm_status status = all && row ? PLM_OK : PLM_E_MEMORY;
+    if (status == PLM_OK) {
+        found = 0;
+        for (size_t i = 0; i < count; i++)
+            if (xyz[i][2] <= height) memcpy(all[found++], xyz[i], sizeof *all);
+        foot->count = plm_sample_rows((const float(*)[3])all, found, MOST_POINTS, row);
+        foot->xyz = plm_alloc(foot->count, sizeof *foot->xyz, error);
+        if (!foot->xyz) status = PLM_E_MEMORY;
     }
-    qsort(foot->xyz, foot->count, sizeof *foot->xyz, compare_heights);
-    return foot->count < FIRST ? plm_fail(error, PLM_E_DEGENERATE, "most points are in one place") : PLM_OK;
+    if (status == PLM_OK) {
+        for (size_t i = 0; i < foot->count; i++)
+            for (int k = 0; k < 3; k++) foot->xyz[i][k] = all[row[i]][k];
+        qsort(foot->xyz, foot->count, sizeof *foot->xyz, compare_heights);
+        if (foot->count < FIRST) status = plm_fail(error, PLM_E_DEGENERATE, "most points are in one place");
+    }
+    plm_free(all);
+    plm_free(row);
+    return status;
 }
 
-/* The height that the lowest points lie below, and that of the highest. */
-static plm_status height_of_lowest(const float (*xyz)[3], size_t count, double *height, double *top, plm_error *error)
-{
-    double *z = plm_alloc(count, sizeof *z, error);
-    if (!z) return PLM_E_MEMORY;
-    *top = -INFINITY;
-    for (size_t i = 0; i < count; i++) z[i] = xyz[i][2], *top = fmax(*top, z[i]);
-    *height = plm_order_select(z, count, FIRST - 1);
-    plm_free(z);
-    return PLM_OK;
-}
+/** What the FIRST lowest points tell. */
+typedef struct lowest_points {
+    double low, high, width; /* heights of the lowest that is not stray and of the highest of them; see width_of */
+    double plant;            /* from the highest of them to the plant's top */
+} lowest_points;
 
 /* Median distance of the first points from their middle, seen from above. */
 static double width_of(const foot_points *foot)
@@ -110,6 +105,19 @@ static double width_of(const foot_points *foot)
     }
     for (size_t i = 0; i < FIRST; i++) value[i] = hypot(foot->xyz[i][0] - middle[0], foot->xyz[i][1] - middle[1]);
     return plm_order_median(value, FIRST);
+}
+
+static plm_status look_at_lowest(const float (*xyz)[3], size_t count, foot_points *foot, lowest_points *lowest,
+                                 plm_error *error)
+{
+    double *z = plm_alloc(count, sizeof *z, error), top = -INFINITY;
+    if (!z) return PLM_E_MEMORY;
+    for (size_t i = 0; i < count; i++) z[i] = xyz[i][2], top = fmax(top, z[i]);
+    const double first = plm_order_select(z, count, FIRST - 1);
+    plm_free(z);
+    const plm_status status = take_below(xyz, count, first, foot, error);
+    if (status == PLM_OK) *lowest = (lowest_points){foot->xyz[LOWEST][2], first, width_of(foot), top - first};
+    return status;
 }
 
 /* The mean of a third of the foot's points: 0 the lowest, 2 the highest. */
@@ -151,13 +159,13 @@ static plm_cut_tube straight(const plm_tube *tube, double noise, bool fused)
     return cone;
 }
 
-/* Moves the points that are on the tube to the front, their order kept; gives their number, and how low the others reach but for
- * those that may be stray (INFINITY: there are no more). */
-static size_t keep_on_tube(foot_points *foot, const plm_cut_tube *tube, double tolerance, double *others)
+/* Leaves the points that are on the tube, their order kept; gives how low the others reach but for those that may be stray (INFINITY:
+ * there are no more). */
+static double keep_on_tube(foot_points *foot, const plm_cut_tube *tube, double tolerance)
 {
     const size_t stray = (size_t)fmax(few, stray_share * (double)foot->count);
     size_t kept = 0, off_tube = 0;
-    *others = INFINITY;
+    double others = INFINITY;
     for (size_t i = 0; i < foot->count; i++) {
         double gap[3];
         for (int k = 0; k < 3; k++) gap[k] = foot->xyz[i][k] - tube->origin[k];
@@ -165,25 +173,25 @@ static size_t keep_on_tube(foot_points *foot, const plm_cut_tube *tube, double t
         if (fabs(off - (tube->radius + tube->taper * along)) <= tolerance)
             memmove(foot->xyz[kept++], foot->xyz[i], sizeof *foot->xyz);
         else if (off_tube++ == stray)
-            *others = foot->xyz[i][2];
+            others = foot->xyz[i][2];
     }
-    return kept;
+    foot->count = kept;
+    return others;
 }
 
-/* The foot within a window of so many radii, and its tube, found together, from the lowest points. most_height: of the window.
- * PLM_E_DEGENERATE: it is none. */
-static plm_status find_foot(const float (*xyz)[3], size_t count, double radii, double noise, double most_height,
-                            foot_points *foot, plm_tube *tube, plm_error *error)
+/* The foot within a window of so many radii, and its tube, found together. PLM_E_DEGENERATE: it is none. */
+static plm_status find_foot(const float (*xyz)[3], size_t count, double radii, double noise,
+                            const lowest_points *lowest, foot_points *foot, plm_tube *tube, plm_error *error)
 {
-    double width = width_of(foot);
-    const double lowest = foot->xyz[LOWEST][2], first = foot->xyz[FIRST - 1][2], most = widest * fmax(width, noise);
+    double width = lowest->width;
     plm_status status = PLM_OK;
-    if (radii * width > most_height) return plm_fail(error, PLM_E_DEGENERATE, "the lowest points are no foot");
+    if (radii * width > tallest * lowest->plant)
+        return plm_fail(error, PLM_E_DEGENERATE, "the lowest points are no foot");
     for (int round = 0; round < ROUNDS && status == PLM_OK; round++) {
-        const double height = fmax(lowest + radii * fmax(width, noise), first);
+        const double height = fmax(lowest->low + radii * fmax(width, noise), lowest->high);
         status = take_below(xyz, count, height, foot, error);
         if (status == PLM_OK) status = fit_tube(foot, tube, error);
-        if (status == PLM_OK && tube->radius[0] > most)
+        if (status == PLM_OK && tube->radius[0] > widest * fmax(lowest->width, noise))
             status = plm_fail(error, PLM_E_DEGENERATE, "the lowest points are no foot");
         if (status == PLM_OK) width = tube->radius[0];
     }
@@ -205,10 +213,10 @@ static plm_status find_end(foot_points *foot, const plm_tube *tube, const plm_sa
     plm_cut_tube cone = straight(tube, noise, sampling->fused);
     if (!is_tube(tube, &cone)) return PLM_OK;
     cone.noise = fmin(noise, tube->robust_sd); /* on surfaces as bent as a thin stem's too much is read */
-    double others;
-    const size_t on = keep_on_tube(foot, &cone, fmax(near_radius * cone.radius, near_noise * noise), &others);
-    if (on < FEWEST || (double)on < least_share * (double)foot->count) return PLM_OK;
-    const plm_status status = plm_cut_end((const double(*)[3])foot->xyz, on, &cone, end, std_error, error);
+    const double all = (double)foot->count,
+                 others = keep_on_tube(foot, &cone, fmax(near_radius * cone.radius, near_noise * noise));
+    if (foot->count < FEWEST || (double)foot->count < least_share * all) return PLM_OK;
+    const plm_status status = plm_cut_end((const double(*)[3])foot->xyz, foot->count, &cone, end, std_error, error);
     if (status != PLM_OK) return status;
     const double turn = plm_tube_direction_error(tube, -1, 1) * cone.radius;
     *std_error = sqrt(*std_error * *std_error + turn * turn + pow(round_error * cone.radius, 2) +
@@ -224,14 +232,12 @@ plm_status plm_stem_foot(const float (*xyz)[3], size_t count, plm_extreme *base,
     const plm_sampling *sampling = &base->sampling;
     const double noise = sampling->noise > PLM_NOISE_FREE * sampling->spacing ? sampling->noise : 0;
     foot_points foot = {0};
-    double first, top;
-    plm_status status = height_of_lowest(xyz, count, &first, &top, error);
+    lowest_points lowest;
+    plm_status status = look_at_lowest(xyz, count, &foot, &lowest, error);
     for (int w = 0; w < WINDOWS && status == PLM_OK && !*changed; w++) {
         plm_tube tube = {0};
         double end = NAN, std_error = NAN;
-        status = take_below(xyz, count, first, &foot, error);
-        if (status == PLM_OK)
-            status = find_foot(xyz, count, window[w], noise, tallest * (top - first), &foot, &tube, error);
+        status = find_foot(xyz, count, window[w], noise, &lowest, &foot, &tube, error);
         if (status == PLM_OK) status = find_end(&foot, &tube, sampling, noise, &end, &std_error, error);
         if (status == PLM_E_DEGENERATE) status = PLM_OK;
         const double most_error = fmin(fmax(base->std_error, told * tube.radius[0]), surer * base->std_error);
@@ -241,5 +247,5 @@ plm_status plm_stem_foot(const float (*xyz)[3], size_t count, plm_extreme *base,
         *changed = true;
     }
     plm_free(foot.xyz);
-    return status;
+    return status == PLM_E_DEGENERATE ? PLM_OK : status;
 }
