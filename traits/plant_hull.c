@@ -176,8 +176,8 @@ static const double pixel_inset = 0.3, pixel_outset = 0.7;
  * `noise` is between what 290 scans by virtual depth cameras ask for (0.5: rosettes -0.2, others -0.4 %) and four of another family (0.2). */
 static hull_factors factors_of(const plm_scene *scene, bool noisy)
 {
-    /* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (149 clean
-     * plants: 0.16 by halves, 0.15 by corners, 0.145 % by both). */
+    /* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (144 clean
+     * plants: 0.161 by halves, 0.146 by corners, 0.144 % by both). */
     if (!noisy && scene->plant_index) return (hull_factors){.corners = 0.5, .deficit = 1.0, .area_deficit = 2.0};
     if (!noisy) return (hull_factors){.deficit = 2.0, .deficit_error = 0.5, .area_deficit = 2.0};
     if (scene->sampling.fused)
