@@ -3,7 +3,7 @@
 #ifndef PLANTIMETER_CLOUD_TRUST_REGION_H
 #define PLANTIMETER_CLOUD_TRUST_REGION_H
 
-enum { PLM_FIT_MOST_PARAMETERS = 32 };
+enum { PLM_FIT_MOST_PARAMETERS = 36 };
 
 /** Why a fit ended. */
 typedef enum plm_fit_end {

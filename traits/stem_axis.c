@@ -173,7 +173,7 @@ static plm_status fit(const plm_scene *scene, const plm_tube_points *points, plm
     axis->noise = line.distance * 0.5;
     double reach = 2.5 * line.distance;
     plm_tube tube;
-    status = plm_tube_fit((const double(*)[3])points->xyz, points->count, &line.curve, true, &tube, error);
+    status = plm_tube_fit((const double(*)[3])points->xyz, points->count, &line.curve, PLM_TUBE_TAPERED, &tube, error);
     if (status == PLM_E_MEMORY) return status;
     if (status == PLM_OK) axis->fit = plm_tube_note(&tube);
     if (status == PLM_OK && fabs(tube.radius[1]) < tube.radius[0]) {

@@ -141,7 +141,7 @@ static plm_status fit_tube(const foot_points *foot, plm_tube *tube, plm_error *e
     plm_curve start;
     if (!plm_curve_line(begin, end, 1, 1, &start))
         return plm_fail(error, PLM_E_DEGENERATE, "the lowest points are in one place");
-    return plm_tube_fit((const double(*)[3])sample, count, &start, true, tube, error);
+    return plm_tube_fit((const double(*)[3])sample, count, &start, PLM_TUBE_TAPERED, tube, error);
 }
 
 /* The tube as a cone about a straight axis that points up. */

@@ -91,7 +91,7 @@ static plm_status fit_window(const plm_axis *axis, double t, double reach, const
     plm_curve start;
     if (!plm_curve_line(ends[0], ends[1], 2, 1, &start))
         return plm_fail(error, PLM_E_DEGENERATE, "the window around the place of measurement has no length");
-    return plm_tube_fit((const double(*)[3])points->xyz, points->count, &start, true, tube, error);
+    return plm_tube_fit((const double(*)[3])points->xyz, points->count, &start, PLM_TUBE_TAPERED, tube, error);
 }
 
 plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, double t, double reach, plm_estimate *out,

@@ -1,7 +1,7 @@
 /* traits/tube_fit.c: the robust tube fit. Distances to a curved axis and their derivatives follow from the foot point:
  * as the gap between point and foot is at right angles to the curve, moving the foot changes the distance in second
- * order only, so d(distance)/d(coefficient) = -normal . d(axis)/d(coefficient) at the foot; the radius, linear in t,
- * adds the movement of the foot. */
+ * order only, so d(distance)/d(coefficient) = -normal . d(axis)/d(coefficient) at the foot; the radius, where it changes
+ * along t, adds the movement of the foot. */
 #include "traits/tube_fit.h"
 
 #include "cloud/linear.h"
@@ -18,7 +18,8 @@ static const double inlying = 3.0;    /* robust SDs within which a point is of t
 static const double trimmed = 4.0;
 static const double misfit = 0.15; /* share of the radius that a real stem may be off its tube: never left out */
 static const double settled = 1e-4,
-                    converged = 1e-9;      /* last step over the radius: between rescalings, and at the end */
+                    converged = 1e-9; /* last step over the radius: between rescalings, and at the end */
+static const double flare_start = 0.3, flare_radii = 3; /* of a petiole's foot: share of the radius, length in radii */
 static const double smallest_scale = 1e-7; /* f over the radius: below it residuals are rounding of float coordinates */
 
 typedef struct problem {
@@ -26,8 +27,9 @@ typedef struct problem {
     size_t count;
     plm_curve axis; /* frame and form; offsets are those of the last evaluation */
     int basis;      /* coefficients of u, and of v */
-    int size;       /* parameters */
-    double *foot;   /* t of each point */
+    plm_tube_form form;
+    int size;     /* parameters */
+    double *foot; /* t of each point */
     double *
         known; /* the feet from which those of a trial are found: of the last accepted axis, so that a trial's cost does
                        not depend on the trials before it where a point has two feet */
@@ -61,9 +63,20 @@ static double refine_foot(const plm_curve *axis, const double point[3], double t
     }
 }
 
-static double radius_at(const problem *p, const double x[], double t)
+/* Of the radius with the parameters r[] at t: the value, its change by t, and by each of the parameters. */
+static double radius_at(plm_tube_form form, const double r[], double t, double *slope, double change[4])
 {
-    return x[2 * p->basis] + (p->size > 2 * p->basis + 1 ? x[2 * p->basis + 1] * t : 0);
+    change[0] = 1;
+    *slope = 0;
+    if (form == PLM_TUBE_EVEN) return r[0];
+    change[1] = t;
+    *slope = r[1];
+    if (form == PLM_TUBE_TAPERED) return r[0] + r[1] * t;
+    const double length = exp(r[3]), along = (t + 1) / length;
+    change[2] = exp(-fmax(along, -1)); /* before the axis' begin it soon stays as it is */
+    change[3] = along > -1 ? r[2] * change[2] * along : 0;
+    if (along > -1) *slope -= r[2] * change[2] / length;
+    return r[0] + r[1] * t + r[2] * change[2];
 }
 
 /* Residuals and feet at x. */
@@ -73,7 +86,8 @@ static void evaluate(problem *p, const double x[])
     for (size_t i = 0; i < p->count; i++) {
         double at[3], first[3], second[3], gap[3];
         p->foot[i] = refine_foot(&p->axis, p->xyz[i], p->known[i], at, first, second, gap);
-        p->residual[i] = plm_norm(gap) - radius_at(p, x, p->foot[i]);
+        double slope, change[4];
+        p->residual[i] = plm_norm(gap) - radius_at(p->form, x + 2 * p->basis, p->foot[i], &slope, change);
     }
 }
 
@@ -88,7 +102,8 @@ static int derivatives(const problem *p, const double x[], size_t i, int column[
     for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
     const double speed = plm_dot(first, first), newton = speed - plm_dot(gap, second);
     const double bend = newton > 0.2 * speed ? newton : speed;
-    const double slope = p->size > 2 * p->basis + 1 ? x[2 * p->basis + 1] : 0;
+    double slope, change[4];
+    radius_at(p->form, x + 2 * p->basis, t, &slope, change);
     const double distance = plm_norm(gap);
     int used = 0;
     for (int c = 0; c < 2; c++) {
@@ -100,11 +115,9 @@ static int derivatives(const problem *p, const double x[], size_t i, int column[
             value[used++] = -(distance > 0 ? toward / distance : 0) * n0[k] - slope * moved;
         }
     }
-    column[used] = 2 * p->basis;
-    value[used++] = -1;
-    if (p->size > 2 * p->basis + 1) {
-        column[used] = 2 * p->basis + 1;
-        value[used++] = -t;
+    for (int k = 0; k < p->size - 2 * p->basis; k++) {
+        column[used] = 2 * p->basis + k;
+        value[used++] = -change[k];
     }
     return used;
 }
@@ -120,8 +133,8 @@ static void accumulate(const problem *p, const double x[], double scale, double 
         const double r = p->residual[i];
         if (!(fabs(r) <= limit)) continue;
         const double weight = scale > 0 ? 1 / sqrt(1 + (r / scale) * (r / scale)) : 1, bend = weight * weight * weight;
-        int column[2 * 4 + 2];
-        double value[2 * 4 + 2];
+        int column[2 * 4 + 4];
+        double value[2 * 4 + 4];
         const int used = derivatives(p, x, i, column, value);
         for (int a = 0; a < used; a++) {
             gradient[column[a]] += weight * value[a] * r;
@@ -167,6 +180,7 @@ static void descend(problem *p, fit *f, double tolerance, double *work)
 {
     double typical[PLM_TUBE_PARAMETERS];
     for (int a = 0; a < p->size; a++) typical[a] = fabs(f->x[2 * p->basis]) + 1e-15;
+    if (p->form == PLM_TUBE_FLARED) typical[p->size - 1] = 1; /* a logarithm */
     descent context = {p, f->scale};
     const plm_least_squares squares = {
         .size = p->size, .context = &context, .move = move_to, .normal = normal_at, .typical = typical};
@@ -206,7 +220,7 @@ static void solve(problem *p, fit *f, double *work)
     }
 }
 
-/* Start at the given axis: radius is the median distance from it. */
+/* Start at the given axis: radius is the median distance from it; a flare starts as those of seedlings' petioles are. */
 static void start_at_axis(problem *p, const plm_curve *start, fit *f)
 {
     memset(f, 0, sizeof *f);
@@ -217,7 +231,12 @@ static void start_at_axis(problem *p, const plm_curve *start, fit *f)
         for (int k = 0; k < 3; k++) gap[k] = p->xyz[i][k] - at[k];
         p->scratch[i] = plm_norm(gap);
     }
-    f->x[2 * p->basis] = plm_order_median(p->scratch, p->count);
+    const double radius = plm_order_median(p->scratch, p->count);
+    double *r = f->x + 2 * p->basis;
+    r[0] = radius;
+    if (p->form != PLM_TUBE_FLARED) return;
+    r[2] = flare_start * radius;
+    r[3] = log(fmin(fmax(flare_radii * radius / p->axis.half, 1e-3), 1));
 }
 
 /* Start at the algebraic circle (I. Kasa, 1976) of the points in the planes across the given axis: right where less than
@@ -280,9 +299,13 @@ static bool conclude(problem *p, const fit *best, double *matrix, double *invers
                     .iteration_count = best->steps,
                     .converged = best->end == PLM_FIT_SMALL_STEP || best->end == PLM_FIT_SMALL_GAIN,
                     .end = best->end,
+                    .form = p->form,
+                    .flare_length = 1,
                     .parameter_count = n};
-    out.radius[0] = best->x[2 * p->basis];
-    out.radius[1] = n > 2 * p->basis + 1 ? best->x[2 * p->basis + 1] : 0;
+    const double *r = best->x + 2 * p->basis;
+    out.radius[0] = r[0];
+    if (p->form != PLM_TUBE_EVEN) out.radius[1] = r[1];
+    if (p->form == PLM_TUBE_FLARED) out.flare = r[2], out.flare_length = exp(r[3]);
     out.robust_sd = robust_sd(p);
     const double limit = inlying * fmax(out.robust_sd, smallest_scale * fabs(out.radius[0]));
     double squares = 0, gradient[PLM_TUBE_PARAMETERS];
@@ -304,14 +327,14 @@ static bool conclude(problem *p, const fit *best, double *matrix, double *invers
     return true;
 }
 
-plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
-                        plm_error *error)
+plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, plm_tube_form form,
+                        plm_tube *tube, plm_error *error)
 {
-    const int basis = plm_curve_basis_count(start), size = 2 * basis + 1 + taper;
+    const int basis = plm_curve_basis_count(start), size = 2 * basis + (form == PLM_TUBE_FLARED ? 4 : 1 + (int)form);
     if (count < 2 * (size_t)size)
         return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for a tube of %d parameters; %d are needed",
                         count, size, 2 * size);
-    problem p = {.xyz = xyz, .count = count, .axis = *start, .basis = basis, .size = size};
+    problem p = {.xyz = xyz, .count = count, .axis = *start, .basis = basis, .form = form, .size = size};
     double *vectors = plm_alloc(4 * count, sizeof *vectors, error);
     double *matrix = plm_alloc(3 * (size_t)(size * size), sizeof *matrix, error);
     plm_status status = vectors && matrix ? PLM_OK : PLM_E_MEMORY;
@@ -343,14 +366,14 @@ plm_fit_note plm_tube_note(const plm_tube *tube)
 
 double plm_tube_radius(const plm_tube *tube, double t, double *std_error)
 {
-    const int a = 2 * plm_curve_basis_count(&tube->axis);
-    const bool taper = tube->parameter_count > a + 1;
-    if (std_error) {
-        double variance = tube->covariance[a][a];
-        if (taper) variance += 2 * t * tube->covariance[a][a + 1] + t * t * tube->covariance[a + 1][a + 1];
-        *std_error = sqrt(fmax(variance, 0));
-    }
-    return tube->radius[0] + (taper ? tube->radius[1] * t : 0);
+    const int at = 2 * plm_curve_basis_count(&tube->axis), own = tube->parameter_count - at;
+    const double r[4] = {tube->radius[0], tube->radius[1], tube->flare, log(tube->flare_length)};
+    double slope, change[4], variance = 0;
+    const double radius = radius_at(tube->form, r, t, &slope, change);
+    for (int a = 0; a < own; a++)
+        for (int b = 0; b < own; b++) variance += change[a] * tube->covariance[at + a][at + b] * change[b];
+    if (std_error) *std_error = sqrt(fmax(variance, 0));
+    return radius;
 }
 
 double plm_tube_direction_error(const plm_tube *tube, double a, double b)

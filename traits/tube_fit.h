@@ -1,4 +1,4 @@
-/* traits/tube_fit.h: robust fit of a tube (curved axis, linear radius) to points of its surface. Internal. */
+/* traits/tube_fit.h: robust fit of a tube (curved axis, linear radius, flared or not) to points of its surface. Internal. */
 #ifndef PLANTIMETER_TRAITS_TUBE_FIT_H
 #define PLANTIMETER_TRAITS_TUBE_FIT_H
 
@@ -7,14 +7,24 @@
 #include "traits/axis_curve.h"
 #include "traits/traits.h"
 
-enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 2, PLM_TUBE_SECTORS = 24 };
+enum { PLM_TUBE_PARAMETERS = 2 * PLM_CURVE_BASIS + 4, PLM_TUBE_SECTORS = 24 };
 
-/** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the two of the radius. */
+/** What the radius may do along the axis. */
+typedef enum plm_tube_form {
+    PLM_TUBE_EVEN = 0,
+    PLM_TUBE_TAPERED, /**< linear */
+    PLM_TUBE_FLARED   /**< linear, and wider towards t = -1: the foot of a petiole */
+} plm_tube_form;
+
+/** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the form's of the radius: its mean,
+ * its slope, the flare and the logarithm of the flare's length. */
 typedef struct plm_tube {
     plm_curve axis;
-    double radius[2]; /**< radius at parameter t: radius[0] + radius[1] t */
-    double robust_sd; /**< robust SD of the residuals, all points */
-    double spread;    /**< SD of the inlying residuals (within 3 robust SD) */
+    plm_tube_form form;
+    double radius[2]; /**< radius at parameter t: radius[0] + radius[1] t + flare exp(-(t + 1) / flare_length) */
+    double flare, flare_length; /**< 0 and 1 where it is not flared */
+    double robust_sd;           /**< robust SD of the residuals, all points */
+    double spread;              /**< SD of the inlying residuals (within 3 robust SD) */
     size_t inlier_count;
     double coverage; /**< share of the directions around the axis in which inlying points lie */
     double
@@ -32,10 +42,9 @@ typedef struct plm_tube {
  * Residual: distance to the axis, at right angles to its local tangent, minus the radius there. Minimised: the sum of
  * soft-L1 losses 2 f^2 (sqrt(1 + (residual / f)^2) - 1) with f = 1.5 robust SD, found again in three rounds, by
  * the scaled trust region of cloud/trust_region.h with analytic derivatives; from two starts (the given axis, and an algebraic circle about it), of which the better is kept.
- * taper: whether the radius may change along the axis.
  * PLM_E_DEGENERATE  fewer points than twice the parameters, or points that determine no tube. */
-plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, bool taper, plm_tube *tube,
-                        plm_error *error);
+plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, plm_tube_form form,
+                        plm_tube *tube, plm_error *error);
 
 /** What an estimate tells of the fit. */
 plm_fit_note plm_tube_note(const plm_tube *tube);

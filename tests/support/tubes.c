@@ -29,7 +29,8 @@ void test_tube_points(const test_tube *tube, size_t count, uint64_t *state, doub
         const double t = test_uniform(state);
         const double angle = tube->arc[0] + (tube->arc[1] - tube->arc[0]) * test_uniform(state);
         const double slope = 4 * tube->bow * (1 - 2 * t) / length, stretch = hypot(1, slope);
-        const double radius = tube->radius[0] + t * (tube->radius[1] - tube->radius[0]);
+        double radius = tube->radius[0] + t * (tube->radius[1] - tube->radius[0]);
+        if (tube->flare_length > 0) radius += tube->flare * exp(-t * length / tube->flare_length);
         double at[3];
         test_tube_axis(tube, t, at);
         for (int k = 0; k < 3; k++) {

@@ -6,10 +6,11 @@
 #include <stdint.h>
 
 /** A tube over the chord from base to end that bows sideways (towards the horizontal normal of the chord) by bow at half
- * length, as a parabola; radius linear from radius[0] at the base to radius[1]. Points lie between the directions
- * arc[0] and arc[1] (radians; from the side of the bow), with isotropic normal noise. */
+ * length, as a parabola; radius linear from radius[0] at the base to radius[1], wider by flare at the base, which falls off by e in
+ * flare_length along the chord (0: no flare). Points lie between the directions arc[0] and arc[1] (radians; from the side of the
+ * bow), with isotropic normal noise. */
 typedef struct test_tube {
-    double base[3], end[3], bow, radius[2], arc[2], noise;
+    double base[3], end[3], bow, radius[2], flare, flare_length, arc[2], noise;
 } test_tube;
 
 /** Writes count points of the tube's surface. */

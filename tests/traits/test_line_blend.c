@@ -39,7 +39,7 @@ static void fit(uint64_t seed, plm_centre_line *line, plm_tube *tube)
     plm_error error = {0};
     make(seed, xyz);
     assert_ok(plm_centre_line_fit((const double(*)[3])xyz, POINTS, base, end, 3, 1, line, &error));
-    assert_ok(plm_tube_fit((const double(*)[3])xyz, POINTS, &line->curve, true, tube, &error));
+    assert_ok(plm_tube_fit((const double(*)[3])xyz, POINTS, &line->curve, PLM_TUBE_TAPERED, tube, &error));
 }
 
 static void the_tube_tells_where_one_side_is_seen_better(void **unused)

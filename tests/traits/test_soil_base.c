@@ -38,7 +38,11 @@ static plm_cloud plant_on_soil(double stem_from, low_part low)
     plm_cloud cloud;
     uint64_t state = 7;
     static double stem[STEM][3];
-    const test_tube tube = {{0, 0, stem_from}, {0, 0, TALL}, 0, {2e-3, 2e-3}, {0, 2 * acos(-1)}, NOISE};
+    const test_tube tube = {.base = {0, 0, stem_from},
+                            .end = {0, 0, TALL},
+                            .radius = {2e-3, 2e-3},
+                            .arc = {0, 2 * acos(-1)},
+                            .noise = NOISE};
     assert_ok(plm_cloud_create(STEM + LEAF + SOIL + LOW, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
     cloud.count = 0;
     test_tube_points(&tube, STEM, &state, stem);
