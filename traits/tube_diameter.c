@@ -12,8 +12,15 @@
 enum { MOST_POINTS = 6000, FEWEST_POINTS = 16 };
 
 /* Noise adds 4 c q^2 / d to the diameter d, q the SD of the residuals. Noise along the normal adds nothing (c = 0),
- * isotropic noise c = 0.5; the values are fits to simulated scans (the estimators' study, section 6). */
+ * isotropic noise c = 0.5; the values are fits to simulated scans (the estimators' study, section 6).
+ * Where points are no voxel means and noise comes near the radius, points of one side lie beyond the axis: they are off it by the
+ * normal's folded distribution, whose mean is larger than the radius and whose SD is smaller than the noise. The mean of the squares
+ * is the square of the radius and of the noise in any case, and the noise is known from the whole plant. */
 static const double inflation_plain = 0.1, inflation_plain_error = 0.10;
+static const double thick = 3, folded = 2;      /* radius over spread where folding begins to tell, and where it is all */
+static const double folded_inflation = 0.1;     /* on top of the plain one: 421 petioles of splats */
+static const double folded_error = 0.35 / 2;    /* the same, of its error */
+static const double least_radius = 0.3;         /* of the fitted one */
 static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflation_fused_most = 1.6;
 /* Depth cameras: each view's own errors (of its place, and of the mixed pixels along both edges) shift its arc of the ring
  * as a whole. At small noise that adds more than the noise of single points does: so many spreads to the diameter, and so many
@@ -34,21 +41,42 @@ static const double unresolved = 4; /* diameter over spread below which the ring
 static const double unresolved_error =
     0.15; /* share of the diameter that is left open then: measured on virtual petioles */
 
+static double square(double x)
+{
+    return x * x;
+}
+
+/* Of voxel means. */
+static void deflate_fused(double fit, double spread, const plm_sampling *sampling, double *diameter, double *noise_error)
+{
+    const double thickness = 2 * spread / fit;
+    const double inflation = fmin(inflation_fused + 3 * fmax(0, thickness - thick_noise), inflation_fused_most);
+    const double inflation_error = inflation_fused_error + fmax(0, thickness - very_thick_noise);
+    const double pixels = pixel_inflation * sampling->gathering * spread * spread / fit;
+    const double excess = fmax(4 * inflation * spread * spread / fit, view_inflation * spread) + pixels;
+    *diameter = fmax(fit - excess, least_radius * fit);
+    *noise_error = fmax(4 * inflation_error * spread * spread / *diameter, view_error * spread);
+}
+
+/* Of points as they were seen. */
+static void deflate_plain(double fit, double spread, const plm_sampling *sampling, double *diameter, double *noise_error)
+{
+    const double radius = 0.5 * fit, squares = spread * spread;
+    const double thin = fmin(fmax((thick - radius / fmax(spread, 1e-3 * radius)) / (thick - folded), 0), 1);
+    const double noise = squares + thin * fmax(sampling->noise * sampling->noise - squares, 0);
+    const double inflation = inflation_plain + thin * folded_inflation;
+    const double inflation_error = inflation_plain_error + thin * folded_error;
+    const double left = radius * radius + squares - (1 + 2 * inflation) * noise;
+    *diameter = 2 * sqrt(fmax(left, square(least_radius * radius)));
+    *noise_error = 4 * inflation_error * noise / *diameter;
+}
+
 void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,
                       double *std_error)
 {
-    const bool fused = sampling->fused;
-    const double thickness = 2 * spread / fit;
-    const double inflation =
-        fused ? fmin(inflation_fused + 3 * fmax(0, thickness - thick_noise), inflation_fused_most) : inflation_plain;
-    const double inflation_error =
-        fused ? inflation_fused_error + fmax(0, thickness - very_thick_noise) : inflation_plain_error;
-    const double pixels = pixel_inflation * sampling->gathering * spread * spread / fit;
-    const double excess = fmax(4 * inflation * spread * spread / fit, fused ? view_inflation * spread : 0) + pixels;
-    const double d = fmax(fit - excess, 0.3 * fit);
-    const double noise_error = fmax(4 * inflation_error * spread * spread / d, fused ? view_error * spread : 0);
-    *diameter = d;
-    *std_error = sqrt(pow(fit_error_factor * fit_error, 2) + noise_error * noise_error + pow(model_error * d, 2));
+    double noise_error;
+    (sampling->fused ? deflate_fused : deflate_plain)(fit, spread, sampling, diameter, &noise_error);
+    *std_error = sqrt(square(fit_error_factor * fit_error) + square(noise_error) + square(model_error * *diameter));
 }
 
 /* The organ's points within reach of t along the line, and not far off it. */
