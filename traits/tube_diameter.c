@@ -17,10 +17,10 @@ enum { MOST_POINTS = 6000, FEWEST_POINTS = 16 };
  * normal's folded distribution, whose mean is larger than the radius and whose SD is smaller than the noise. The mean of the squares
  * is the square of the radius and of the noise in any case, and the noise is known from the whole plant. */
 static const double inflation_plain = 0.1, inflation_plain_error = 0.10;
-static const double thick = 3, folded = 2;      /* radius over spread where folding begins to tell, and where it is all */
-static const double folded_inflation = 0.1;     /* on top of the plain one: 421 petioles of splats */
-static const double folded_error = 0.35 / 2;    /* the same, of its error */
-static const double least_radius = 0.3;         /* of the fitted one */
+static const double thick = 3, folded = 2;   /* radius over spread where folding begins to tell, and where it is all */
+static const double folded_inflation = 0.1;  /* on top of the plain one: 421 petioles of splats */
+static const double folded_error = 0.35 / 2; /* the same, of its error */
+static const double least_radius = 0.3;      /* of the fitted one */
 static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflation_fused_most = 1.6;
 /* Depth cameras: each view's own errors (of its place, and of the mixed pixels along both edges) shift its arc of the ring
  * as a whole. At small noise that adds more than the noise of single points does: so many spreads to the diameter, and so many
@@ -47,7 +47,8 @@ static double square(double x)
 }
 
 /* Of voxel means. */
-static void deflate_fused(double fit, double spread, const plm_sampling *sampling, double *diameter, double *noise_error)
+static void deflate_fused(double fit, double spread, const plm_sampling *sampling, double *diameter,
+                          double *noise_error)
 {
     const double thickness = 2 * spread / fit;
     const double inflation = fmin(inflation_fused + 3 * fmax(0, thickness - thick_noise), inflation_fused_most);
@@ -59,7 +60,8 @@ static void deflate_fused(double fit, double spread, const plm_sampling *samplin
 }
 
 /* Of points as they were seen. */
-static void deflate_plain(double fit, double spread, const plm_sampling *sampling, double *diameter, double *noise_error)
+static void deflate_plain(double fit, double spread, const plm_sampling *sampling, double *diameter,
+                          double *noise_error)
 {
     const double radius = 0.5 * fit, squares = spread * spread;
     const double thin = fmin(fmax((thick - radius / fmax(spread, 1e-3 * radius)) / (thick - folded), 0), 1);
