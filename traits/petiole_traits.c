@@ -8,6 +8,9 @@
 
 #include <math.h>
 
+static const double petiolule_radii = 8;
+/* Noise over the radius below which half of the window tells the diameter as well, which flares and tapers within it. */
+static const double sharp = 0.03;
 static const double round_error = 0.01; /* of a petiole's diameter: it is no perfect circle */
 
 static plm_status without_axis(const plm_organ *organ, plm_estimate *out)
@@ -48,7 +51,7 @@ plm_status plm_trait_petiole_length(const plm_scene *scene, const plm_organ *org
 }
 
 /* Length along the petiole to where its leaf begins: the whole length for a simple leaf, less for a compound one, whose
- * leaflets stand along the rachis. Leaf points nearer than three radii count. */
+ * leaflets stand along the rachis, on petiolules of their own: leaf points nearer than eight radii count. */
 static double length_to_blade(const plm_scene *scene, const plm_organ *petiole)
 {
     const plm_axis *axis = petiole->axis;
@@ -62,7 +65,8 @@ static double length_to_blade(const plm_scene *scene, const plm_organ *petiole)
         double at[3], gap[3];
         plm_curve_point(&axis->line, t, at);
         for (int k = 0; k < 3; k++) gap[k] = point[k] - at[k];
-        if (plm_norm(gap) < 3 * axis->radius) shortest = fmin(shortest, plm_curve_length(&axis->line, axis->begin, t));
+        if (plm_norm(gap) < petiolule_radii * axis->radius)
+            shortest = fmin(shortest, plm_curve_length(&axis->line, axis->begin, t));
     }
     return shortest;
 }
@@ -73,7 +77,8 @@ plm_status plm_trait_petiole_diameter(const plm_scene *scene, const plm_organ *o
     const plm_axis *axis = organ->axis;
     if (!axis) return without_axis(organ, out);
     const double length = length_to_blade(scene, organ);
-    const double reach = fmin(0.4 * length, 12 * axis->radius);
+    const bool is_sharp = axis->noise < sharp * axis->radius;
+    const double reach = (is_sharp ? 0.5 : 1) * fmin(0.4 * length, 12 * axis->radius);
     const plm_status status =
         plm_tube_diameter(scene, organ, plm_curve_walk(&axis->line, axis->begin, 0.5 * length), reach, out, error);
     if (status == PLM_OK && out->state == PLM_STATE_OK)

@@ -24,7 +24,7 @@ static plm_measurement measure(plm_virtual_plant *plant, const plm_scan_options 
     plm_scan_free(&scan);
     plm_measure_defaults(&measure_options);
     measure_options.up = PLM_UP_Z;
-    measure_options.traits = "stem_length,petiole_inclination";
+    measure_options.traits = "stem_length,petiole_inclination,petiole_diameter";
     assert_ok(plm_measure(&cloud, &measure_options, &measurement, &error));
     return measurement;
 }
@@ -208,6 +208,32 @@ static void a_noisy_foot_is_balanced_for_what_is_called_stem(void **state)
     assert_true(rms < 0.8);
 }
 
+/* First leaflets on long petiolules were not seen to stand there, and three of these petioles, measured amid their leaflets, came
+ * out up to 22 % too thin. */
+static void a_compound_leafs_petiole_is_measured_before_its_first_leaflet(void **state)
+{
+    (void)state;
+    plm_error error = {0};
+    const plm_scan_options dome = {.scanner = PLM_SCANNER_DOME, .seed = 47001, .points = 45000};
+    plm_virtual_plant plant;
+    assert_ok(plm_plant_grow("tomato", &(plm_plant_options){.seed = dome.seed}, &plant, &error));
+    plm_measurement measurement = measure(&plant, &dome);
+    double found[MOST], built[MOST], most = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < measurement.value_count && count < MOST; i++)
+        if (!strcmp(measurement.value[i].trait->name, "petiole_diameter"))
+            found[count++] = measurement.value[i].estimate.value;
+    assert_int_equal(count, plant.petiole_count);
+    for (size_t i = 0; i < count; i++) built[i] = plant.petiole[i].diameter;
+    qsort(found, count, sizeof *found, ascending);
+    qsort(built, count, sizeof *built, ascending);
+    for (size_t i = 0; i < count; i++) most = fmax(most, fabs(found[i] / built[i] - 1));
+    print_message("petioles of a tomato: diameters within %.1f %%\n", 100 * most);
+    assert_true(most < 0.03);
+    plm_measurement_free(&measurement);
+    plm_virtual_plant_free(&plant);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +244,7 @@ int main(void)
         cmocka_unit_test(a_long_petiole_is_not_the_stem),
         cmocka_unit_test(a_clean_petiole_begins_at_the_stems_surface),
         cmocka_unit_test(a_sinus_ends_near_to_where_the_blade_widens),
+        cmocka_unit_test(a_compound_leafs_petiole_is_measured_before_its_first_leaflet),
         cmocka_unit_test(a_noisy_foot_is_balanced_for_what_is_called_stem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
