@@ -18,7 +18,8 @@ enum {
     MOST_LEAFLETS = 64,
     COMPOUND_PARTS =
         3, /* connected parts, or leaflets, from which on a leaf on a petiole is taken for a compound one */
-    FEWEST_CONTACTS = 4
+    FEWEST_CONTACTS = 4,
+    TIP_STEPS = 12
 };
 
 static const double large_leaflet = 0.05;  /* share of a leaf's points: less is no leaflet that tells a compound one */
@@ -32,7 +33,10 @@ static const double contact_reach = 2.5, contact_aside = 1.0;
 static const double junction_share = 0.8, junction_most = 0.15;
 
 /* Nodes within this share of the furthest distance, and this near to the furthest one, make the tip. */
-static const double tip_share = 0.03, tip_reach = 0.15;
+static const double tip_share = 0.03, tip_reach = 0.15, settled = 1e-3;
+static const double wide_share = 0.06, wide_reach = 0.25; /* the same, of those that tell its middle across */
+static const double pointed_share = 0.03;                 /* of the furthest distance: the former spread less across */
+static const double most_shift = 2;                       /* spreads of the former by which the latter may move it */
 
 /** Nodes and shortest ways from the first one. */
 typedef struct way {
@@ -255,6 +259,16 @@ static size_t furthest_node(const way *w)
     return best;
 }
 
+/* Of the surface. */
+static size_t nearest_node(const way *w, const double place[3])
+{
+    const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
+    size_t best = 0;
+    for (size_t j = 1; j < w->surface; j++)
+        if (gap_between(w->xyz[j], at) < gap_between(w->xyz[best], at)) best = j;
+    return best;
+}
+
 /* How far the surface reaches from a place in a direction, at most `most`, among its vertices that are within `aside` of that
  * line. Nodes are only some of the
  * vertices: the outermost of them lies inside by as much as they lie apart. */
@@ -271,24 +285,78 @@ static double reach_from(const plm_mesh *mesh, const double place[3], const doub
     return furthest;
 }
 
-/* The tip: in the middle, across the leaf, of the nodes that are nearly as far as the furthest one, and as far out as
- * the surface reaches there. The furthest one alone lies anywhere along a round end. */
-static void place_tip(const way *w, const plm_mesh *mesh, size_t last, const double base[3], double tip[3])
+/* Mean of the nodes that are nearly as far as the furthest one and within reach of the place; gives their number. */
+static double mean_of_far(const way *w, double near_far, double reach, const double place[3], double mean[3])
 {
-    const double far = w->distance[last], near_far = (1 - tip_share) * far, reach = tip_reach * far;
-    double middle[3] = {0, 0, 0}, out[3], count = 0;
+    const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
+    double count = 0;
+    memset(mean, 0, 3 * sizeof *mean);
     for (size_t j = 0; j < w->surface; j++) {
-        if (w->distance[j] < near_far || gap_between(w->xyz[j], w->xyz[last]) > reach) continue;
-        for (int i = 0; i < 3; i++) middle[i] += w->xyz[j][i];
+        if (w->distance[j] < near_far || gap_between(w->xyz[j], at) > reach) continue;
+        for (int i = 0; i < 3; i++) mean[i] += w->xyz[j][i];
         count++;
     }
-    for (int i = 0; i < 3; i++) {
-        middle[i] /= count;
-        out[i] = middle[i] - base[i];
+    for (int i = 0; i < 3 && count > 0; i++) mean[i] /= count;
+    return count;
+}
+
+/* The middle of the nodes that are at least a share of the furthest one's distance away, sought in steps from there. */
+static void middle_of_far(const way *w, size_t last, double share, double reach, double middle[3])
+{
+    const double far = w->distance[last];
+    for (int i = 0; i < 3; i++) middle[i] = w->xyz[last][i];
+    for (int step = 0; step < TIP_STEPS; step++) {
+        double mean[3];
+        if (!(mean_of_far(w, (1 - share) * far, reach * far, middle, mean) > 0)) return;
+        const double moved = plm_distance(mean, middle);
+        memcpy(middle, mean, sizeof mean);
+        if (moved < settled * far) return;
     }
+}
+
+/* RMS distance, along a direction, of the nodes about a middle from it. */
+static double spread_along(const way *w, double near_far, double reach, const double middle[3],
+                           const double direction[3])
+{
+    const float at[3] = {(float)middle[0], (float)middle[1], (float)middle[2]};
+    double squares = 0, count = 0;
+    for (size_t j = 0; j < w->surface; j++) {
+        if (w->distance[j] < near_far || gap_between(w->xyz[j], at) > reach) continue;
+        double off = 0;
+        for (int i = 0; i < 3; i++) off += (w->xyz[j][i] - middle[i]) * direction[i];
+        squares += off * off;
+        count++;
+    }
+    return count > 0 ? sqrt(squares / count) : 0;
+}
+
+/* The tip: in the middle, across the leaf, of the nodes that are nearly as far as the furthest one, and as far out as
+ * the surface reaches there. The furthest one alone lies anywhere along a round end: more nodes tell the middle across, fewer how far
+ * the leaf goes. Gives how far the end spreads across (RMS), by which the tip is unsure. */
+static double place_tip(const way *w, const plm_leaf_surface *surface, size_t last, const double base[3], double tip[3])
+{
+    const double far = w->distance[last], reach = tip_reach * far;
+    double middle[3], wide[3], out[3], across[3], shift = 0, spread = 0;
+    middle_of_far(w, last, tip_share, tip_reach, middle);
+    middle_of_far(w, last, wide_share, wide_reach, wide);
+    for (int i = 0; i < 3; i++) out[i] = wide[i] - base[i];
     plm_normalise(out);
-    const double furthest = reach_from(mesh, middle, out, reach, reach);
+    plm_cross(surface->plane.normal, out, across);
+    if (plm_normalise(across) > 0) {
+        spread = spread_along(w, (1 - tip_share) * far, reach, middle, across);
+        for (int i = 0; i < 3; i++) shift += across[i] * (wide[i] - middle[i]);
+        shift = fmin(fmax(shift, -most_shift * spread), most_shift * spread); /* a pointed tip stays where it is */
+        for (int i = 0; i < 3; i++) middle[i] += shift * across[i];
+    }
+    size_t before = last;
+    const bool pointed = spread < pointed_share * far;
+    while (pointed && w->distance[before] > (1 - tip_reach) * far && w->before[before] != before)
+        before = w->before[before];
+    for (int i = 0; i < 3; i++) out[i] = middle[i] - (pointed ? w->xyz[before][i] : base[i]);
+    plm_normalise(out); /* of a pointed leaf as it runs there: it may droop */
+    const double furthest = reach_from(&surface->mesh, middle, out, reach, reach);
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
+    return spread;
 }
 
 /* Moves the junction out to the end of the surface there, but not beyond the petiole's (NULL: there is none): the mean of contacts
@@ -327,8 +395,9 @@ static plm_status simple_midrib(const plm_scene *scene, const plm_organ *leaf, c
                       : find_contact(&w, 0, w.surface, holder, out->base, &start, error);
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
-        const size_t last = furthest_node(&w);
-        place_tip(&w, &leaf->surface.mesh, last, out->base, out->tip);
+        size_t last = furthest_node(&w);
+        out->tip_spread = place_tip(&w, &leaf->surface, last, out->base, out->tip);
+        last = nearest_node(&w, out->tip);
         move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, ends ? end : NULL, out->base);
         draw_line(&w, start, last, out->base, out->tip, &line);
         out->length = line.length;
@@ -387,7 +456,7 @@ static plm_status compound_midrib(const plm_scene *scene, const plm_organ *leaf,
         const size_t first = first_junction(&w, touch);
         double junction[3], direction[3];
         for (int i = 0; i < 3; i++) junction[i] = w.xyz[first][i];
-        place_tip(&w, &leaf->surface.mesh, last, junction, out->tip);
+        out->tip_spread = place_tip(&w, &leaf->surface, last, junction, out->tip);
         for (int i = 0; i < 3; i++) direction[i] = out->tip[i] - junction[i];
         draw_line(&w, first, last, junction, out->tip, &line);
         out->length = line.length;

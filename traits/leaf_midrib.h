@@ -6,9 +6,10 @@
 
 /** The line from a leaf's junction to its tip. Offsets as the organ's points, metres. */
 typedef struct plm_midrib {
-    double base[3];              /**< blade junction; compound leaves: base of the petiole */
-    double tip[3];               /**< of the blade; compound leaves: of the last leaflet */
-    double end_error;            /**< standard error of either end, along any direction */
+    double base[3];    /**< blade junction; compound leaves: base of the petiole */
+    double tip[3];     /**< of the blade; compound leaves: of the last leaflet */
+    double end_error;  /**< standard error of either end, along any direction */
+    double tip_spread; /**< RMS extent across the leaf of what is as far out as the tip: large where it is round */
     double length, length_error; /**< arc from the junction (compound: of the first leaflet) to the tip */
     double width, width_error; /**< largest section along the surface; compound: extent across the leaf in its plane */
     double thickness;          /**< of the organ that the leaf hangs on, from its points */

@@ -8,6 +8,9 @@
 
 #include <math.h>
 
+/* Share of the spread of a round end by which its tip is unsure across the leaf (virtual cucumbers, okras and rosettes). */
+static const double round_tip = 0.5;
+
 static bool has_midrib(const plm_organ *leaf, plm_estimate *out)
 {
     if (!plm_leaf_has_surface(leaf, out)) return false;
@@ -54,7 +57,7 @@ plm_status plm_trait_leaf_azimuth(const plm_scene *scene, const plm_organ *leaf,
     (void)scene, (void)error;
     if (!has_midrib(leaf, out)) return PLM_OK;
     const plm_midrib *midrib = leaf->midrib;
-    const double e = hypot(midrib->end_error * sqrt(2), 0.015 * midrib->length);
+    const double e = hypot(hypot(midrib->end_error * sqrt(2), 0.015 * midrib->length), round_tip * midrib->tip_spread);
     return point_azimuth(midrib->tip[0] - midrib->base[0], midrib->tip[1] - midrib->base[1], e, out);
 }
 
