@@ -1,4 +1,4 @@
-/* cloud/trust_region.c: the scaled trust region, on the normal matrix: fits have at most 32 parameters, and the cost of
+/* cloud/trust_region.c: the scaled trust region, on the normal matrix: fits have at most 36 parameters, and the cost of
  * a step is that of walking the points once. With columns scaled to length 1 the matrix keeps the digits that squaring the
  * Jacobian would else lose to units. */
 #include "cloud/trust_region.h"

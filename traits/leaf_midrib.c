@@ -332,31 +332,32 @@ static double spread_along(const way *w, double near_far, double reach, const do
 
 /* The tip: in the middle, across the leaf, of the nodes that are nearly as far as the furthest one, and as far out as
  * the surface reaches there. The furthest one alone lies anywhere along a round end: more nodes tell the middle across, fewer how far
- * the leaf goes. Gives how far the end spreads across (RMS), by which the tip is unsure. */
-static double place_tip(const way *w, const plm_leaf_surface *surface, size_t last, const double base[3], double tip[3])
+ * the leaf goes. Of compound leaves as few tell both: other leaflets end near by. Gives how far the end spreads across (RMS), by which the tip is unsure. */
+static double place_tip(const way *w, const plm_leaf_surface *surface, size_t last, bool compound, const double base[3],
+                        double tip[3])
 {
     const double far = w->distance[last], reach = tip_reach * far;
-    double middle[3], wide[3], out[3], across[3], shift = 0, spread = 0;
+    double middle[3], wide[3], out[3], across[3], shift = 0, wideness = 0;
     middle_of_far(w, last, tip_share, tip_reach, middle);
-    middle_of_far(w, last, wide_share, wide_reach, wide);
+    middle_of_far(w, last, compound ? tip_share : wide_share, compound ? tip_reach : wide_reach, wide);
     for (int i = 0; i < 3; i++) out[i] = wide[i] - base[i];
     plm_normalise(out);
     plm_cross(surface->plane.normal, out, across);
     if (plm_normalise(across) > 0) {
-        spread = spread_along(w, (1 - tip_share) * far, reach, middle, across);
+        wideness = spread_along(w, (1 - tip_share) * far, reach, middle, across);
         for (int i = 0; i < 3; i++) shift += across[i] * (wide[i] - middle[i]);
-        shift = fmin(fmax(shift, -most_shift * spread), most_shift * spread); /* a pointed tip stays where it is */
+        shift = fmin(fmax(shift, -most_shift * wideness), most_shift * wideness); /* a pointed tip stays where it is */
         for (int i = 0; i < 3; i++) middle[i] += shift * across[i];
     }
     size_t before = last;
-    const bool pointed = spread < pointed_share * far;
+    const bool pointed = wideness < pointed_share * far;
     while (pointed && w->distance[before] > (1 - tip_reach) * far && w->before[before] != before)
         before = w->before[before];
     for (int i = 0; i < 3; i++) out[i] = middle[i] - (pointed ? w->xyz[before][i] : base[i]);
     plm_normalise(out); /* of a pointed leaf as it runs there: it may droop */
     const double furthest = reach_from(&surface->mesh, middle, out, reach, reach);
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
-    return spread;
+    return wideness;
 }
 
 /* Moves the junction out to the end of the surface there, but not beyond the petiole's (NULL: there is none): the mean of contacts
@@ -396,7 +397,7 @@ static plm_status simple_midrib(const plm_scene *scene, const plm_organ *leaf, c
     if (status == PLM_OK) status = find_ways(&w, start, error);
     if (status == PLM_OK) {
         size_t last = furthest_node(&w);
-        out->tip_spread = place_tip(&w, &leaf->surface, last, out->base, out->tip);
+        out->tip_spread = place_tip(&w, &leaf->surface, last, false, out->base, out->tip);
         last = nearest_node(&w, out->tip);
         move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, ends ? end : NULL, out->base);
         draw_line(&w, start, last, out->base, out->tip, &line);
@@ -456,7 +457,7 @@ static plm_status compound_midrib(const plm_scene *scene, const plm_organ *leaf,
         const size_t first = first_junction(&w, touch);
         double junction[3], direction[3];
         for (int i = 0; i < 3; i++) junction[i] = w.xyz[first][i];
-        out->tip_spread = place_tip(&w, &leaf->surface, last, junction, out->tip);
+        out->tip_spread = place_tip(&w, &leaf->surface, last, true, junction, out->tip);
         for (int i = 0; i < 3; i++) direction[i] = out->tip[i] - junction[i];
         draw_line(&w, first, last, junction, out->tip, &line);
         out->length = line.length;

@@ -185,19 +185,22 @@ static const plm_curve *line_of(const petiole *p)
                                                                                                     : &p->line.curve;
 }
 
-/* A sharp tube tells how it widens towards the stem, too: about a flare that is not told, the axis of a bent petiole is drawn off by 0.1 to
- * 0.2 mm at its foot. */
+/* A sharp tube tells how it widens towards the stem, too: about a flare that is not told, the axis of a bent petiole is drawn off by
+ * 0.1 to 0.2 mm at its foot. */
 static plm_status flare(petiole *p, plm_error *error)
 {
-    plm_tube flared;
-    const plm_status status = plm_tube_fit((const double(*)[3])p->points.xyz, p->points.count, &p->line.curve,
-                                           PLM_TUBE_FLARED, &flared, error);
-    if (status == PLM_E_MEMORY) return status;
+    const double(*xyz)[3] = (const double(*)[3])p->points.xyz;
+    plm_tube plain, flared;
+    plm_error why = {0};
+    plm_status status = plm_tube_fit(xyz, p->points.count, &p->line.curve, PLM_TUBE_TAPERED, &plain, &why);
+    if (status == PLM_OK) status = plm_tube_fit(xyz, p->points.count, &p->line.curve, PLM_TUBE_FLARED, &flared, &why);
+    if (status == PLM_E_MEMORY) return plm_fail(error, status, "%s", why.message);
     if (status != PLM_OK || !flared.converged || !is_tube(p, &flared)) return PLM_OK;
-    if (!(fabs(flared.flare) < widest_flare * flared.radius[0]) || flared.coverage < seen) return PLM_OK;
-    if (flared.robust_sd > flares * p->tube.robust_sd) return PLM_OK;
+    const double radius = plm_tube_radius(&flared, 0, NULL);
+    if (!(flared.flare > 0 && flared.flare < widest_flare * radius) || flared.coverage < seen) return PLM_OK;
+    if (!(flared.robust_sd < sharp * radius && flared.robust_sd < flares * plain.robust_sd)) return PLM_OK;
     p->tube = flared;
-    p->radius = flared.radius[0];
+    p->radius = radius;
     p->noise = flared.robust_sd;
     return PLM_OK;
 }
@@ -205,7 +208,8 @@ static plm_status flare(petiole *p, plm_error *error)
 /* Radius of the petiole at t: they widen towards the stem. */
 static double radius_at(const petiole *p, double t)
 {
-    const double radius = p->has_tube ? plm_tube_radius(&p->tube, fmin(fmax(t, -1), 1), NULL) : p->radius;
+    const double before = p->has_tube && p->tube.flare > 0 ? p->tube.flare_length : 0;
+    const double radius = p->has_tube ? plm_tube_radius(&p->tube, fmin(fmax(t, -1 - before), 1), NULL) : p->radius;
     return fmax(radius, 0.3 * p->radius);
 }
 

@@ -8,7 +8,10 @@
 
 #include <math.h>
 
-static const double petiolule_radii = 8;
+enum { FIRST_POINTS = 3, FEWEST_SHARP = 24 };
+
+static const double petiolule_radii =
+    8; /* off the rachis, within which leaf points are a leaflet's that stands there */
 /* Noise over the radius below which half of the window tells the diameter as well, which flares and tapers within it. */
 static const double sharp = 0.03;
 static const double round_error = 0.01; /* of a petiole's diameter: it is no perfect circle */
@@ -51,24 +54,31 @@ plm_status plm_trait_petiole_length(const plm_scene *scene, const plm_organ *org
 }
 
 /* Length along the petiole to where its leaf begins: the whole length for a simple leaf, less for a compound one, whose
- * leaflets stand along the rachis, on petiolules of their own: leaf points nearer than eight radii count. */
+ * leaflets stand along the rachis, on petiolules of their own: leaf points nearer than eight radii count, but for the first two, which
+ * may be strays. */
 static double length_to_blade(const plm_scene *scene, const plm_organ *petiole)
 {
     const plm_axis *axis = petiole->axis;
     const plm_organ *leaf = plm_scene_organ(scene, PLM_LABEL_LEAF, petiole->id);
-    double shortest = axis->length;
-    if (!leaf || !leaf->leaflet) return shortest;
+    if (!leaf || !leaf->leaflet) return axis->length;
+    double first[FIRST_POINTS];
+    for (int k = 0; k < FIRST_POINTS; k++) first[k] = axis->length;
     for (size_t i = 0; i < leaf->count; i++) {
         const double point[3] = {leaf->xyz[i][0], leaf->xyz[i][1], leaf->xyz[i][2]};
         const double t = plm_curve_foot(&axis->line, point);
         if (t <= axis->begin || t >= axis->end) continue;
-        double at[3], gap[3];
+        double at[3];
         plm_curve_point(&axis->line, t, at);
-        for (int k = 0; k < 3; k++) gap[k] = point[k] - at[k];
-        if (plm_norm(gap) < petiolule_radii * axis->radius)
-            shortest = fmin(shortest, plm_curve_length(&axis->line, axis->begin, t));
+        if (plm_distance(at, point) >= petiolule_radii * axis->radius) continue;
+        double length = plm_curve_length(&axis->line, axis->begin, t);
+        for (int k = 0; k < FIRST_POINTS; k++)
+            if (length < first[k]) {
+                const double later = first[k];
+                first[k] = length;
+                length = later;
+            }
     }
-    return shortest;
+    return first[FIRST_POINTS - 1];
 }
 
 plm_status plm_trait_petiole_diameter(const plm_scene *scene, const plm_organ *organ, plm_estimate *out,
@@ -77,10 +87,16 @@ plm_status plm_trait_petiole_diameter(const plm_scene *scene, const plm_organ *o
     const plm_axis *axis = organ->axis;
     if (!axis) return without_axis(organ, out);
     const double length = length_to_blade(scene, organ);
+    const double reach = fmin(0.4 * length, 12 * axis->radius);
+    const double place = plm_curve_walk(&axis->line, axis->begin, 0.5 * length);
+    plm_status status = PLM_OK;
+    const plm_estimate blank = *out;
     const bool is_sharp = axis->noise < sharp * axis->radius;
-    const double reach = (is_sharp ? 0.5 : 1) * fmin(0.4 * length, 12 * axis->radius);
-    const plm_status status =
-        plm_tube_diameter(scene, organ, plm_curve_walk(&axis->line, axis->begin, 0.5 * length), reach, out, error);
+    if (is_sharp) status = plm_tube_diameter(scene, organ, place, 0.5 * reach, out, error);
+    if (status == PLM_OK && (!is_sharp || out->state != PLM_STATE_OK || out->point_count < FEWEST_SHARP)) {
+        *out = blank;
+        status = plm_tube_diameter(scene, organ, place, reach, out, error);
+    }
     if (status == PLM_OK && out->state == PLM_STATE_OK)
         out->std_error = hypot(out->std_error, round_error * out->value);
     return status;

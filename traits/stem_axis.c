@@ -16,8 +16,9 @@ static const double radii_per_span = 40;
 /* A tube is taken over the centroids where its residuals are below this share of the radius and it is seen from this
  * share of the directions: beyond, the ring fit wanders (section 7 of the estimators' study). */
 static const double sharp = 0.35, seen = 0.6;
-static const double closer =
-    0.97; /* scatter with twice the spans over that with the spans before: the stem bends more */
+static const double shortest_span = 6;               /* with more spans than one, in radii */
+static const double sector = 1.5 / PLM_TUBE_SECTORS; /* one direction less about the tube may be seen */
+static const double closer = 0.97;   /* scatter with twice the spans over that before: the stem bends more */
 static const double end_shape = 0.1; /* radii by which an end's shape leaves the end of the axis open */
 /* Where the labels are our own, the stem's end is told from the topmost petiole's foot by the change of radius only, which
  * the radius and the noise blur (errors of 0.6 mm clean, 2.8 and 5 mm in noise of 0.5 mm, median over simulated plants);
@@ -103,17 +104,28 @@ static plm_status fit_both(const plm_tube_points *points, double ends[2][3], int
     return plm_tube_fit(xyz, points->count, &line->curve, PLM_TUBE_TAPERED, tube, error);
 }
 
+/* Robust SD off the tube, by the points that are more than its parameters. */
+static double free_sd(const plm_tube_points *points, const plm_tube *tube)
+{
+    const double count = (double)points->count;
+    return tube->robust_sd * sqrt(count / fmax(count - tube->parameter_count, 1));
+}
+
 /* Stems bend at their nodes within less than a span: twice the spans as long as a tube then lies closer to the points. */
 static plm_status bend(const plm_tube_points *points, double ends[2][3], plm_centre_line *line, plm_tube *tube,
                        plm_error *error)
 {
+    const double length = 2 * line->curve.half;
     for (int spans = 2 * line->curve.spans; spans <= PLM_CURVE_SPANS; spans *= 2) {
+        if (length < shortest_span * tube->radius[0] * spans) break;
         plm_centre_line bent_line;
         plm_tube bent;
         plm_error why = {0};
         const plm_status status = fit_both(points, ends, spans, &bent_line, &bent, &why);
         if (status == PLM_E_MEMORY) return plm_fail(error, status, "%s", why.message);
-        if (status != PLM_OK || !bent.converged || bent.robust_sd > closer * tube->robust_sd) break;
+        if (status != PLM_OK || !bent.converged || !(fabs(bent.radius[1]) < bent.radius[0])) break;
+        if (!(free_sd(points, &bent) < closer * free_sd(points, tube)) || bent.coverage < tube->coverage - sector)
+            break;
         *line = bent_line;
         *tube = bent;
     }

@@ -65,12 +65,12 @@ static void deflate_plain(double fit, double spread, const plm_sampling *samplin
 {
     const double radius = 0.5 * fit, squares = spread * spread;
     const double thin = fmin(fmax((thick - radius / fmax(spread, 1e-3 * radius)) / (thick - folded), 0), 1);
-    const double noise = squares + thin * fmax(sampling->noise * sampling->noise - squares, 0);
+    const double variance = squares + thin * fmax(sampling->noise * sampling->noise - squares, 0);
     const double inflation = inflation_plain + thin * folded_inflation;
     const double inflation_error = inflation_plain_error + thin * folded_error;
-    const double left = radius * radius + squares - (1 + 2 * inflation) * noise;
+    const double left = radius * radius + squares - (1 + 2 * inflation) * variance;
     *diameter = 2 * sqrt(fmax(left, square(least_radius * radius)));
-    *noise_error = 4 * inflation_error * noise / *diameter;
+    *noise_error = 4 * inflation_error * variance / *diameter;
 }
 
 void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,

@@ -5,7 +5,8 @@
 #include "traits/axis.h"
 
 /** What noise adds to a fitted tube: noise across the normal and points beyond the surface move the fitted circle out.
- * fit, fit_error: fitted diameter and its standard error; spread: SD of the inlying residuals. Gives the diameter without
+ * Of voxel means the spread tells the noise; of points as they were seen the plant's noise does (sampling->noise, m), where it comes
+ * near to the radius. fit, fit_error: fitted diameter and its standard error; spread: SD of the inlying residuals. Gives the diameter without
  * it and its standard error. sampling: the plant's: voxel means weigh a voxel that one stray pixel hit like one that fifty
  * hit, and so inflate more, the more pixels there are. */
 void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,

@@ -20,6 +20,8 @@ static const double misfit = 0.15; /* share of the radius that a real stem may b
 static const double settled = 1e-4,
                     converged = 1e-9; /* last step over the radius: between rescalings, and at the end */
 static const double flare_start = 0.3, flare_radii = 3; /* of a petiole's foot: share of the radius, length in radii */
+/* Logarithms of a flare's length: where there is none, nothing else holds it. */
+static const double shortest_flare = -7, longest_flare = 0;
 static const double smallest_scale = 1e-7; /* f over the radius: below it residuals are rounding of float coordinates */
 
 typedef struct problem {
@@ -73,7 +75,7 @@ static double radius_at(plm_tube_form form, const double r[], double t, double *
     *slope = r[1];
     if (form == PLM_TUBE_TAPERED) return r[0] + r[1] * t;
     const double length = exp(r[3]), along = (t + 1) / length;
-    change[2] = exp(-fmax(along, -1)); /* before the axis' begin it soon stays as it is */
+    change[2] = exp(-fmax(along, -1)); /* it stays as it is from one length before the axis' begin */
     change[3] = along > -1 ? r[2] * change[2] * along : 0;
     if (along > -1) *slope -= r[2] * change[2] / length;
     return r[0] + r[1] * t + r[2] * change[2];
@@ -164,6 +166,8 @@ typedef struct descent {
 static double move_to(void *context, const double *x)
 {
     const descent *d = context;
+    const double log_length = x[d->p->size - 1];
+    if (d->p->form == PLM_TUBE_FLARED && !(log_length > shortest_flare && log_length < longest_flare)) return INFINITY;
     evaluate(d->p, x);
     return cost_of(d->p, d->scale);
 }
@@ -236,7 +240,7 @@ static void start_at_axis(problem *p, const plm_curve *start, fit *f)
     r[0] = radius;
     if (p->form != PLM_TUBE_FLARED) return;
     r[2] = flare_start * radius;
-    r[3] = log(fmin(fmax(flare_radii * radius / p->axis.half, 1e-3), 1));
+    r[3] = log(fmin(fmax(flare_radii * radius / p->axis.half, 2e-3), 0.9));
 }
 
 /* Start at the algebraic circle (I. Kasa, 1976) of the points in the planes across the given axis: right where less than

@@ -16,12 +16,13 @@ typedef enum plm_tube_form {
     PLM_TUBE_FLARED   /**< linear, and wider towards t = -1: the foot of a petiole */
 } plm_tube_form;
 
-/** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the form's of the radius: its mean,
- * its slope, the flare and the logarithm of the flare's length. */
+/** A fitted tube. Parameters are, in this order, the coefficients of u, those of v, and the form's of the radius: its value
+ * at t = 0 without the flare, its slope, the flare and the logarithm of the flare's length. */
 typedef struct plm_tube {
     plm_curve axis;
     plm_tube_form form;
-    double radius[2]; /**< radius at parameter t: radius[0] + radius[1] t + flare exp(-(t + 1) / flare_length) */
+    double radius[2]; /**< radius at parameter t: radius[0] + radius[1] t + flare exp(-(t + 1) / flare_length),
+                          the exponent at most 1 */
     double flare, flare_length; /**< 0 and 1 where it is not flared */
     double robust_sd;           /**< robust SD of the residuals, all points */
     double spread;              /**< SD of the inlying residuals (within 3 robust SD) */
@@ -40,7 +41,7 @@ typedef struct plm_tube {
 /** Fits a tube to count points. start gives the chord, the degree and spans of the axis, and its first shape.
  *
  * Residual: distance to the axis, at right angles to its local tangent, minus the radius there. Minimised: the sum of
- * soft-L1 losses 2 f^2 (sqrt(1 + (residual / f)^2) - 1) with f = 1.5 robust SD, found again in three rounds, by
+ * soft-L1 losses 2 f^2 (sqrt(1 + (residual / f)^2) - 1) with f = 1.5 robust SD, found again in five rounds, by
  * the scaled trust region of cloud/trust_region.h with analytic derivatives; from two starts (the given axis, and an algebraic circle about it), of which the better is kept.
  * PLM_E_DEGENERATE  fewer points than twice the parameters, or points that determine no tube. */
 plm_status plm_tube_fit(const double (*xyz)[3], size_t count, const plm_curve *start, plm_tube_form form,

@@ -221,8 +221,10 @@ static void a_compound_leafs_petiole_is_measured_before_its_first_leaflet(void *
     double found[MOST], built[MOST], most = 0;
     size_t count = 0;
     for (size_t i = 0; i < measurement.value_count && count < MOST; i++)
-        if (!strcmp(measurement.value[i].trait->name, "petiole_diameter"))
+        if (!strcmp(measurement.value[i].trait->name, "petiole_diameter")) {
+            assert_int_equal(measurement.value[i].estimate.state, PLM_STATE_OK);
             found[count++] = measurement.value[i].estimate.value;
+        }
     assert_int_equal(count, plant.petiole_count);
     for (size_t i = 0; i < count; i++) built[i] = plant.petiole[i].diameter;
     qsort(found, count, sizeof *found, ascending);
