@@ -76,8 +76,11 @@ static void deflate_plain(double fit, double spread, const plm_sampling *samplin
 void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sampling *sampling, double *diameter,
                       double *std_error)
 {
-    double noise_error;
-    (sampling->fused ? deflate_fused : deflate_plain)(fit, spread, sampling, diameter, &noise_error);
+    double noise_error = 0;
+    if (sampling->fused)
+        deflate_fused(fit, spread, sampling, diameter, &noise_error);
+    else
+        deflate_plain(fit, spread, sampling, diameter, &noise_error);
     *std_error = sqrt(square(fit_error_factor * fit_error) + square(noise_error) + square(model_error * *diameter));
 }
 
