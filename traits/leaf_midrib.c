@@ -259,13 +259,15 @@ static size_t furthest_node(const way *w)
     return best;
 }
 
-/* Of the surface. */
-static size_t nearest_node(const way *w, const double place[3])
+/* The node of the surface nearest to a place, of those nearly as far as the furthest one: a rolled leaf may lie beside itself. */
+static size_t nearest_far_node(const way *w, size_t last, const double place[3])
 {
     const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
-    size_t best = 0;
-    for (size_t j = 1; j < w->surface; j++)
-        if (gap_between(w->xyz[j], at) < gap_between(w->xyz[best], at)) best = j;
+    size_t best = last;
+    for (size_t j = 0; j < w->surface; j++)
+        if (w->distance[j] >= (1 - wide_share) * w->distance[last] &&
+            gap_between(w->xyz[j], at) < gap_between(w->xyz[best], at))
+            best = j;
     return best;
 }
 
@@ -354,8 +356,9 @@ static double place_tip(const way *w, const plm_leaf_surface *surface, size_t la
     while (pointed && w->distance[before] > (1 - tip_reach) * far && w->before[before] != before)
         before = w->before[before];
     for (int i = 0; i < 3; i++) out[i] = middle[i] - (pointed ? w->xyz[before][i] : base[i]);
-    plm_normalise(out); /* of a pointed leaf as it runs there: it may droop */
-    const double furthest = reach_from(&surface->mesh, middle, out, reach, reach);
+    plm_normalise(out);                                          /* of a pointed leaf as it runs there: it may droop */
+    const double around = pointed ? 2 * tip_share * far : reach; /* a rolled leaf may lie beside its tip */
+    const double furthest = reach_from(&surface->mesh, middle, out, around, around);
     for (int i = 0; i < 3; i++) tip[i] = middle[i] + furthest * out[i];
     return wideness;
 }
@@ -398,7 +401,7 @@ static plm_status simple_midrib(const plm_scene *scene, const plm_organ *leaf, c
     if (status == PLM_OK) {
         size_t last = furthest_node(&w);
         out->tip_spread = place_tip(&w, &leaf->surface, last, false, out->base, out->tip);
-        last = nearest_node(&w, out->tip);
+        last = nearest_far_node(&w, last, out->tip);
         move_base(&leaf->surface.mesh, leaf->surface.area, out->tip, ends ? end : NULL, out->base);
         draw_line(&w, start, last, out->base, out->tip, &line);
         out->length = line.length;
