@@ -287,14 +287,20 @@ static double reach_from(const plm_mesh *mesh, const double place[3], const doub
     return furthest;
 }
 
+/* Whether a node of the surface is so far out, and within reach of the place. */
+static bool is_of_end(const way *w, size_t node, double near_far, double reach, const double place[3])
+{
+    const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
+    return w->distance[node] >= near_far && gap_between(w->xyz[node], at) <= reach;
+}
+
 /* Mean of the nodes that are nearly as far as the furthest one and within reach of the place; gives their number. */
 static double mean_of_far(const way *w, double near_far, double reach, const double place[3], double mean[3])
 {
-    const float at[3] = {(float)place[0], (float)place[1], (float)place[2]};
     double count = 0;
     memset(mean, 0, 3 * sizeof *mean);
     for (size_t j = 0; j < w->surface; j++) {
-        if (w->distance[j] < near_far || gap_between(w->xyz[j], at) > reach) continue;
+        if (!is_of_end(w, j, near_far, reach, place)) continue;
         for (int i = 0; i < 3; i++) mean[i] += w->xyz[j][i];
         count++;
     }
@@ -320,10 +326,9 @@ static void middle_of_far(const way *w, size_t last, double share, double reach,
 static double spread_along(const way *w, double near_far, double reach, const double middle[3],
                            const double direction[3])
 {
-    const float at[3] = {(float)middle[0], (float)middle[1], (float)middle[2]};
     double squares = 0, count = 0;
     for (size_t j = 0; j < w->surface; j++) {
-        if (w->distance[j] < near_far || gap_between(w->xyz[j], at) > reach) continue;
+        if (!is_of_end(w, j, near_far, reach, middle)) continue;
         double off = 0;
         for (int i = 0; i < 3; i++) off += (w->xyz[j][i] - middle[i]) * direction[i];
         squares += off * off;
@@ -333,8 +338,9 @@ static double spread_along(const way *w, double near_far, double reach, const do
 }
 
 /* The tip: in the middle, across the leaf, of the nodes that are nearly as far as the furthest one, and as far out as
- * the surface reaches there. The furthest one alone lies anywhere along a round end: more nodes tell the middle across, fewer how far
- * the leaf goes. Of compound leaves as few tell both: other leaflets end near by. Gives how far the end spreads across (RMS), by which the tip is unsure. */
+ * the surface reaches there. The furthest one alone lies anywhere along a round end: more nodes tell the middle across,
+ * fewer how far the leaf goes. Of compound leaves as few tell both: other leaflets end near by. Gives how far the end
+ * spreads across (RMS), by which the tip is unsure. */
 static double place_tip(const way *w, const plm_leaf_surface *surface, size_t last, bool compound, const double base[3],
                         double tip[3])
 {
