@@ -188,6 +188,47 @@ static void a_blunt_leaf_points_to_the_middle_of_its_end(void **unused)
     assert_true(covered >= TRIALS - 2);
 }
 
+/* Place along a strap that goes out 60 mm, turns back below itself within 8 mm, and ends, 40 mm on, in a hook of 5 mm towards its upper
+ * limb. */
+static void along_hairpin(double s, double *x, double *z)
+{
+    const double out = 0.06, radius = 0.004, back = 0.04, turn = PLM_PI * radius;
+    *x = s, *z = 0.08;
+    if (s > out) {
+        const double angle = fmin(s - out, turn) / radius;
+        *x = out + radius * sin(angle);
+        *z = 0.08 - radius * (1 - cos(angle));
+    }
+    if (s > out + turn) *x = out - fmin(s - out - turn, back);
+    if (s > out + turn + back) *z += s - out - turn - back;
+}
+
+/* The tip was sought beyond the leaf, found at its other limb, and the midrib ended there: 9.7 mm. A line of three bends cuts the
+ * hook and the turn: 105 of 118 mm. */
+static void a_leaf_that_hangs_beside_itself_ends_at_its_tip(void **unused)
+{
+    (void)unused;
+    const double whole = 0.105 + PLM_PI * 0.004;
+    plm_error error = {0};
+    plm_cloud cloud;
+    uint64_t seed = 4;
+    assert_ok(plm_cloud_create(STEM + BLADE, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+    for (size_t i = 0; i < STEM + BLADE; i++) {
+        const double u = test_uniform(&seed), v = test_uniform(&seed);
+        double x, z;
+        along_hairpin(whole * u, &x, &z);
+        if (i < STEM)
+            put(&cloud, i, 0.002 * cos(2 * PLM_PI * v), 0.002 * sin(2 * PLM_PI * v), 0.1 * u, PLM_LABEL_STEM);
+        else
+            put(&cloud, i, 0.002 + x, 0.008 * (v - 0.5) * fmin(8 * (1 - u), 1), z, PLM_LABEL_LEAF);
+    }
+    plm_measurement plant = measure(&cloud);
+    const double found = find(&plant, "leaf_length", 0).value;
+    print_message("%.1f mm of %.1f\n", found, 1e3 * whole);
+    assert_true(found > 0.85e3 * whole && found < 1.1e3 * whole);
+    plm_measurement_free(&plant);
+}
+
 /* Without stem and petiole there is no junction: the midrib's traits say so, the others stand. */
 static void a_blade_alone_has_area_but_no_length(void **unused)
 {
@@ -331,6 +372,7 @@ int main(void)
         cmocka_unit_test(a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends),
         cmocka_unit_test(a_petiole_of_a_few_points_has_an_end),
         cmocka_unit_test(a_blunt_leaf_points_to_the_middle_of_its_end),
+        cmocka_unit_test(a_leaf_that_hangs_beside_itself_ends_at_its_tip),
         cmocka_unit_test(a_blade_alone_has_area_but_no_length),
         cmocka_unit_test(leaves_of_a_rosette_point_away_from_where_petioles_meet),
         cmocka_unit_test(the_error_of_an_arched_strap_tells_how_little_a_plane_is_determined),
