@@ -3,6 +3,7 @@
 #include "segment/side_groups.h"
 
 #include "cloud/linear.h"
+#include "segment/blade_hills.h"
 #include "segment/core.h"
 #include "segment/forked_feet.h"
 #include "segment/scratch.h"
@@ -248,17 +249,33 @@ static plm_status add_loose_groups(work *w, size_t feet, plm_error *error)
     return PLM_OK;
 }
 
-/* Petioles of a rosette that share a foot get one each. */
-static plm_status split_forks(work *w, size_t *feet, plm_error *error)
+/* Groups that were parted in some stage get descriptions of their own. */
+static plm_status judge_anew(work *w, size_t before, const size_t *feet, plm_error *error)
 {
-    const size_t before = *feet;
-    plm_status status = plm_forked_feet(w->sketch, w->out->distance, w->component, feet, error);
-    if (status != PLM_OK || *feet == before) return status;
+    if (*feet == before) return PLM_OK;
     plm_side_group *grown = plm_realloc(w->out->group, *feet + 1, sizeof *grown, error);
     if (!grown) return PLM_E_MEMORY;
     w->out->group = grown;
     for (size_t f = 0; f < *feet; f++) judge(w, (int32_t)f, &grown[f]);
     return PLM_OK;
+}
+
+/* Petioles of a rosette that share a foot get one each. */
+static plm_status split_forks(work *w, size_t *feet, plm_error *error)
+{
+    const size_t before = *feet;
+    const plm_status status = plm_forked_feet(w->sketch, w->out->distance, w->component, feet, error);
+    return status == PLM_OK ? judge_anew(w, before, feet, error) : status;
+}
+
+/* So do those whose blades touch too, and their border goes to the touch. */
+static plm_status split_hills(work *w, size_t *feet, plm_error *error)
+{
+    const size_t before = *feet;
+    plm_status status = plm_blade_hills(w->sketch, w->out->distance, feet, error);
+    if (status != PLM_OK || *feet == before) return status;
+    status = plm_touch_cut(w->sketch, false, w->out->distance, w->sketch->group, error);
+    return status == PLM_OK ? judge_anew(w, before, feet, error) : status;
 }
 
 static plm_status find_groups(work *w, plm_error *error)
@@ -278,9 +295,11 @@ static plm_status find_groups(work *w, plm_error *error)
         for (size_t f = 0; status == PLM_OK && f < feet; f++)
             if (alive[f]) judge(w, (int32_t)f, &w->out->group[f]);
     }
-    if (status == PLM_OK && !w->sketch->stem.count && w->sketch->scale.has_tubes) status = split_forks(w, &feet, error);
+    const bool stemless = !w->sketch->stem.count && w->sketch->scale.has_tubes;
+    if (status == PLM_OK && stemless) status = split_forks(w, &feet, error);
     if (status == PLM_OK)
         status = plm_touch_cut(w->sketch, w->blade_cost > 1, w->out->distance, w->sketch->group, error);
+    if (status == PLM_OK && stemless) status = split_hills(w, &feet, error);
     if (status == PLM_OK) status = add_loose_groups(w, feet, error);
     return status == PLM_OK ? find_blades(w, error) : status;
 }

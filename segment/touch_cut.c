@@ -12,8 +12,11 @@
 #include <stdlib.h>
 
 static const double ROOT = 0.8;    /* of a border's least distance from the trunk: nearer, the giver keeps its points */
+static const double BEGIN = 0.03;  /* quantile of its points' distances: near the core single points are no tube */
 static const double GAIN = 0.5;    /* of what holds across the present border, at most */
 static const double LEAST_CUT = 5; /* in edges of one cell: a border of less is a touch */
+static const double SMALL =
+    5; /* least blades: a young leaf of a rosette is hardly wider than its foot, and may have two */
 /* A leaflet's point that changes its leaf costs PRICE / present edges, present being what holds across the present border: so it means
  * the same at any spacing, as points grow with the square of the width and edges with the width. */
 static const double PRICE = 6;
@@ -23,7 +26,7 @@ static const float SATURATED = 1e-6f;
 /* Two organs that border on each other within blades. */
 typedef struct organ_border {
     int32_t organ[2];
-    float nearest[2]; /* least distance from the trunk of either's points at the border */
+    float nearest; /* distance from the trunk at which the border begins */
 } organ_border;
 
 /* The points of two organs and the edges among them, as arcs in both directions. */
@@ -38,6 +41,7 @@ typedef struct net {
     float *from, *into;          /* what a node still takes from the source and gives to the sink */
     int32_t *level;              /* steps from the source, -1 where none leads */
     uint32_t *next, *queue, *path;
+    bool *second; /* of a node: the second organ's beside the best border so far */
 } net;
 
 static plm_status net_start(net *n, plm_scratch *scratch)
@@ -55,6 +59,7 @@ static plm_status net_start(net *n, plm_scratch *scratch)
     n->next = plm_scratch_take(scratch, count, sizeof *n->next);
     n->queue = plm_scratch_take(scratch, count, sizeof *n->queue);
     n->path = plm_scratch_take(scratch, count, sizeof *n->path);
+    n->second = plm_scratch_take(scratch, count, sizeof *n->second);
     return scratch->failed ? PLM_E_MEMORY : PLM_OK;
 }
 
@@ -101,17 +106,6 @@ static void fill(net *n)
     for (size_t k = 0; k < n->nodes; k++)
         for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
             n->left[e] = capacity(n->sketch, n->point[k], n->point[n->to[e]]);
-}
-
-/* What holds across the border as it is. */
-static double present_cut(const net *n, int32_t organ)
-{
-    double sum = 0;
-    for (size_t k = 0; k < n->nodes; k++)
-        for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
-            if (n->owner[n->point[k]] == organ && n->owner[n->point[n->to[e]]] != organ)
-                sum += capacity(n->sketch, n->point[k], n->point[n->to[e]]);
-    return sum;
 }
 
 /* ---- Maximum flow ----------------------------------------------------------------------------------------------- */
@@ -192,7 +186,8 @@ static int by_organs(const void *a, const void *b)
 {
     const organ_border *p = a, *q = b;
     if (p->organ[0] != q->organ[0]) return p->organ[0] < q->organ[0] ? -1 : 1;
-    return (p->organ[1] > q->organ[1]) - (p->organ[1] < q->organ[1]);
+    if (p->organ[1] != q->organ[1]) return p->organ[1] < q->organ[1] ? -1 : 1;
+    return (p->nearest > q->nearest) - (p->nearest < q->nearest);
 }
 
 static bool is_blade(const plm_sketch *sketch, const int32_t *owner, uint32_t i)
@@ -209,109 +204,152 @@ static size_t find_borders(const net *n, const float *distance, organ_border *li
         for (uint32_t e = graph->first[i]; e < graph->first[i + 1] && is_blade(n->sketch, n->owner, i); e++) {
             const uint32_t j = graph->edge[e];
             if (n->owner[j] > n->owner[i] && is_blade(n->sketch, n->owner, j))
-                list[edges++] = (organ_border){{n->owner[i], n->owner[j]}, {distance[i], distance[j]}};
+                list[edges++] = (organ_border){{n->owner[i], n->owner[j]}, distance[i]};
         }
     qsort(list, edges, sizeof *list, by_organs);
-    for (size_t k = 0; k < edges; k++) {
-        if (!borders || by_organs(&list[borders - 1], &list[k]) != 0) list[borders++] = list[k];
-        for (int d = 0; d < 2; d++)
-            list[borders - 1].nearest[d] = fminf(list[borders - 1].nearest[d], list[k].nearest[d]);
+    for (size_t k = 0, end; k < edges; k = end) {
+        for (end = k; end < edges && list[end].organ[0] == list[k].organ[0] && list[end].organ[1] == list[k].organ[1];)
+            end++;
+        list[borders++] = list[k + (size_t)(BEGIN * (double)(end - k))]; /* writes behind what is read */
     }
     return borders;
 }
 
-/* The neck of a giver. */
-typedef struct neck {
-    double holds; /* INFINITY: too much, or all of the giver would be beyond */
-    bool keeps_blade;
-} neck;
+/* A border of the two organs of a net. */
+typedef struct cut {
+    double holds;    /* what the edges across it hold */
+    size_t blade[2]; /* points of blade that it leaves to either organ */
+    bool moves;      /* a point changes its organ */
+} cut;
 
-static neck find_neck(net *n, const organ_border *border, int giver, const float *distance, double limit)
+static bool is_second(const net *n, const organ_border *border, size_t k)
 {
-    const plm_sketch *s = n->sketch;
-    bool rooted = false;
+    return n->owner[n->point[k]] == border->organ[1];
+}
+
+/* The present border. */
+static cut present_cut(const net *n, const organ_border *border)
+{
+    cut c = {0};
     for (size_t k = 0; k < n->nodes; k++) {
         const uint32_t i = n->point[k];
-        const bool is_root = distance[i] < ROOT * border->nearest[giver];
-        const bool gives = n->owner[i] == border->organ[giver];
-        n->from[k] = gives && is_root ? INFINITY : 0;
-        n->into[k] = gives ? 0 : INFINITY;
-        rooted = rooted || n->from[k] > 0;
+        const bool second = is_second(n, border, k);
+        c.blade[second] += !n->sketch->is_tube[i];
+        for (uint32_t e = n->first[k]; e < n->first[k + 1] && !second; e++)
+            if (is_second(n, border, n->to[e])) c.holds += capacity(n->sketch, i, n->point[n->to[e]]);
     }
-    if (!rooted) return (neck){INFINITY, false};
+    return c;
+}
+
+/* The border that the last flow found: level[] is negative on the second organ's side. */
+static cut found_cut(const net *n, const organ_border *border)
+{
+    cut c = {0};
+    for (size_t k = 0; k < n->nodes; k++) {
+        const uint32_t i = n->point[k];
+        const bool second = n->level[k] < 0;
+        c.blade[second] += !n->sketch->is_tube[i];
+        c.moves = c.moves || second != is_second(n, border, k);
+        for (uint32_t e = n->first[k]; e < n->first[k + 1] && !second; e++)
+            if (n->level[n->to[e]] < 0) c.holds += capacity(n->sketch, i, n->point[n->to[e]]);
+    }
+    return c;
+}
+
+/* The cheapest border where each edge across it and each point that changes its organ has a price (Greig, Porteous and Seheult 1989);
+ * points near the trunk keep theirs. price: of a point of either organ, INFINITY: none may change. False where edges and prices come
+ * to more than limit, or an organ that may give all has no point near the trunk. */
+static bool find_cut(net *n, const organ_border *border, const float *distance, const double price[2], double limit,
+                     cut *found)
+{
+    bool rooted[2] = {isinf(price[0]), isinf(price[1])};
+    for (size_t k = 0; k < n->nodes; k++) {
+        const bool second = is_second(n, border, k);
+        const bool is_root = distance[n->point[k]] < ROOT * border->nearest;
+        rooted[second] = rooted[second] || is_root;
+        n->from[k] = second ? 0 : is_root ? INFINITY : (float)price[0];
+        n->into[k] = !second ? 0 : is_root ? INFINITY : (float)price[1];
+    }
+    if (!rooted[0] || !rooted[1]) return false;
     fill(n);
-    const double flow = find_flow(n, limit);
-    if (flow > limit) return (neck){INFINITY, false};
-    size_t blade = 0;
-    for (size_t k = 0; k < n->nodes; k++) blade += n->level[k] >= 0 && !s->is_tube[n->point[k]];
-    const double area = (double)blade * s->working.cell * s->working.cell;
-    return (neck){flow, !(area < plm_blade_least(s))};
+    if (find_flow(n, limit) > limit) return false;
+    *found = found_cut(n, border);
+    return true;
 }
 
-/* The petiole of the other leaf is a neck too: so rather one behind which the giver keeps a blade. On a stem no other will
- * do: a petiole bears a leaf there. (Young leaves of a rosette may look like tubes from end to end.) */
-static bool is_better(const plm_sketch *sketch, const neck *a, const neck *b)
+/* Whether either organ that had a blade keeps one. */
+static bool keeps_blades(const plm_sketch *sketch, const cut *before, const cut *after)
 {
-    if (!isfinite(a->holds) || (sketch->stem.count && !a->keeps_blade)) return false;
-    if (!isfinite(b->holds) || a->keeps_blade != b->keeps_blade) return !isfinite(b->holds) || a->keeps_blade;
-    return a->holds < b->holds;
-}
-
-/* How many points of blade each of the two organs has: as they are, or as the cut would have it. */
-static void count_blade(const net *n, const organ_border *border, bool cut, size_t blade[2])
-{
-    blade[0] = blade[1] = 0;
-    for (size_t k = 0; k < n->nodes; k++) {
-        const uint32_t i = n->point[k];
-        const bool second = cut ? n->level[k] < 0 : n->owner[i] == border->organ[1];
-        if (!n->sketch->is_tube[i]) blade[second]++;
-    }
-}
-
-/* Between compound leaves the neck may be a rachis, with leaflets on both sides of it. So every point that changes its leaf has a
- * price, and the cheapest border of all is taken (Greig, Porteous and Seheult 1989), if it saves enough of what the present one
- * holds, and leaves both a blade. */
-static void move_leaflets(net *n, const organ_border *border, const float *distance, double present)
-{
-    const float price = (float)(PRICE / present);
-    const double cell = n->sketch->working.cell, least = plm_blade_least(n->sketch) / (cell * cell);
-    bool rooted[2] = {false, false};
-    size_t before[2], after[2];
-    for (size_t k = 0; k < n->nodes; k++) {
-        const uint32_t i = n->point[k];
-        const int side = n->owner[i] == border->organ[1];
-        const bool is_root = distance[i] < ROOT * border->nearest[side];
-        rooted[side] = rooted[side] || is_root;
-        n->from[k] = side ? 0 : is_root ? INFINITY : price;
-        n->into[k] = !side ? 0 : is_root ? INFINITY : price;
-    }
-    if (!rooted[0] || !rooted[1]) return;
-    fill(n);
-    if (find_flow(n, WORTH * present) > WORTH * present) return;
-    count_blade(n, border, false, before);
-    count_blade(n, border, true, after);
+    const double least = plm_blade_least(sketch) / (sketch->working.cell * sketch->working.cell);
     for (int side = 0; side < 2; side++)
-        if (!((double)before[side] < least) && (double)after[side] < least) return;
-    for (size_t k = 0; k < n->nodes; k++) n->owner[n->point[k]] = border->organ[n->level[k] < 0];
+        if (!((double)before->blade[side] < least) && (double)after->blade[side] < least) return false;
+    return true;
+}
+
+static size_t lesser_blade(const cut *c)
+{
+    return c->blade[0] < c->blade[1] ? c->blade[0] : c->blade[1];
+}
+
+/* A touch is narrow against the blades that it parts, while a neck of a petiole leaves hardly a blade to one of the two. */
+static double narrowness(const cut *c)
+{
+    return c->holds / sqrt((double)lesser_blade(c));
+}
+
+static void keep_sides(net *n)
+{
+    for (size_t k = 0; k < n->nodes; k++) n->second[k] = n->level[k] < 0;
+}
+
+/* Between compound leaves the neck may be a rachis, with leaflets on both sides of it. So the border at one price is taken, if it saves
+ * enough of what the present one holds. */
+static bool find_leaflets(net *n, const organ_border *border, const float *distance, const cut *present)
+{
+    const double price = PRICE / present->holds;
+    cut found;
+    if (!find_cut(n, border, distance, (double[2]){price, price}, WORTH * present->holds, &found)) return false;
+    keep_sides(n);
+    return keeps_blades(n->sketch, present, &found);
+}
+
+/* The narrowest border of those at some prices and the necks of both organs (one that gives at no price, while the other keeps all).
+ * All of a blade is given only where it is a piece of the other: it hangs on the trunk by a touch, or is small for two feet. */
+static bool find_touch(net *n, const organ_border *border, const float *distance, const cut *present)
+{
+    static const double OFFER[][2] = {{0, INFINITY}, {INFINITY, 0}, {6, 6}, {1.5, 1.5}, {0.4, 0.4}};
+    const double limit = GAIN * present->holds;
+    const double cell2 = n->sketch->working.cell * n->sketch->working.cell,
+                 small = SMALL * plm_blade_least(n->sketch) / cell2;
+    const bool is_small = !n->sketch->stem.count && (double)lesser_blade(present) < small;
+    double narrowest = GAIN * narrowness(present), least = INFINITY;
+    bool is_touch = false;
+    for (size_t k = 0; k < sizeof OFFER / sizeof *OFFER; k++) {
+        const double price[2] = {OFFER[k][0] / present->holds, OFFER[k][1] / present->holds};
+        const bool is_neck = isinf(price[0]) || isinf(price[1]);
+        cut found;
+        if (!find_cut(n, border, distance, price, is_neck ? limit : INFINITY, &found)) continue;
+        if (!found.moves || found.holds > limit) continue;
+        if (keeps_blades(n->sketch, present, &found)) {
+            if (!(narrowness(&found) < narrowest)) continue;
+            narrowest = narrowness(&found);
+            is_touch = true;
+        } else {
+            if (is_touch || !is_neck || !(is_small || found.holds < LEAST_CUT) || !(found.holds < least)) continue;
+            least = found.holds;
+        }
+        keep_sides(n);
+    }
+    return is_touch || isfinite(least);
 }
 
 static void move_border(net *n, const organ_border *border, bool leaflets, const float *distance)
 {
     net_of(n, border);
-    const double present = present_cut(n, border->organ[0]), limit = GAIN * present;
-    if (present < LEAST_CUT) return;
-    if (leaflets) {
-        move_leaflets(n, border, distance, present);
-        return;
-    }
-    const neck none = {INFINITY, false}, first = find_neck(n, border, 0, distance, limit);
-    const neck second = find_neck(n, border, 1, distance, limit);
-    const neck *best = is_better(n->sketch, &first, &none) ? &first : &none;
-    if (is_better(n->sketch, &second, best)) best = &second;
-    if (best == &none) return;
-    if (best == &first) find_neck(n, border, 0, distance, limit); /* level[] is the second one's */
-    for (size_t k = 0; k < n->nodes; k++)
-        if (n->level[k] < 0) n->owner[n->point[k]] = border->organ[best == &first];
+    const cut present = present_cut(n, border);
+    if (present.holds < LEAST_CUT) return;
+    if (!(leaflets ? find_leaflets : find_touch)(n, border, distance, &present)) return;
+    for (size_t k = 0; k < n->nodes; k++) n->owner[n->point[k]] = border->organ[n->second[k]];
 }
 
 plm_status plm_touch_cut(const plm_sketch *sketch, bool leaflets, const float *distance, int32_t *owner,
