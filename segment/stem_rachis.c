@@ -9,7 +9,7 @@
 #include <math.h>
 
 static const double BLADES_LEAST = 1.5;   /* a leaf below: the plant has compound leaves */
-static const double LEAFLET_TUBE = 0.4;   /* of their tubes: a single blade with less may be a leaflet, ... */
+static const double LEAFLET_TUBE = 0.25;  /* of their tubes: a single blade with less may be a leaflet, ... */
 static const double LEAFLETS_TUBE = 0.15; /* ... and some that touch, with less than this */
 static const double FORK_BEFORE = 1.5; /* the way may leave the stem this far (in R) before the last leaf's foot, ... */
 static const double LEAFLET_BEFORE = 1.5; /* ... and rather leaves it this far before the first leaflet's */

@@ -2,6 +2,7 @@
  * a foot are told apart though their blades touch. */
 #include "support/test.h"
 
+#include "segment/blade_hills.h"
 #include "segment/forked_feet.h"
 #include "segment/side_groups.h"
 #include "segment/touch_cut.h"
@@ -85,6 +86,32 @@ static void the_border_is_at_the_touch(void **unused)
     const size_t after = count_wrong(&sketch);
     print_message("%zu points of the other leaf, %zu after\n", before, after);
     assert_true(before > 100);
+    assert_true(after <= 12);
+    plm_graph_free(&sketch.graph);
+}
+
+/* A petiole is narrower than the touch, but behind its neck the leaf would have a scrap of a blade only. */
+static void the_border_is_not_at_the_neck_of_a_petiole(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    plm_sketch sketch = empty_sketch();
+    add_leaf(&sketch, 0, 0, 10e-3, 8e-3, 0);
+    add_leaf(&sketch, 8.6e-3, 0, 10e-3, 8e-3, 1);
+    for (int k = 4; k < 14; k++) add(&sketch, 10e-3 + k * STEP, 4.2e-3, 0, false, 0); /* the touch */
+    for (size_t i = 0; i < sketch.working.count; i++) /* blades begin as narrow as petioles */
+        if (xyz[i][0] > 5e-3F) is_tube[i] = false;
+    link_all(&sketch);
+    grow(&sketch);
+    for (size_t i = 0; i < sketch.working.count; i++) { /* as if ways to a part of the other blade were shorter */
+        group[i] = truth[i];
+        if (truth[i] == 1 && xyz[i][0] > 13e-3F && xyz[i][1] < 8e-3F) group[i] = 0;
+    }
+    const size_t before = count_wrong(&sketch);
+    assert_ok(plm_touch_cut(&sketch, false, distance, group, &error));
+    const size_t after = count_wrong(&sketch);
+    print_message("%zu points of the other leaf, %zu after\n", before, after);
+    assert_true(before > 50);
     assert_true(after <= 12);
     plm_graph_free(&sketch.graph);
 }
@@ -185,6 +212,35 @@ static void petioles_of_one_foot_are_told_apart(void **unused)
     plm_graph_free(&sketch.graph);
 }
 
+/* Two blades that touch on petioles that lie on each other all the way: feet do not tell them apart, their tips do. A leaf alone
+ * has one tip, and in a scan without noise gaps look like touches. */
+static void blades_on_petioles_that_join_are_told_apart(void **unused)
+{
+    (void)unused;
+    for (int leaves = 1; leaves <= 2; leaves++)
+        for (int noisy = 0; noisy < 2; noisy++) {
+            plm_error error = {0};
+            plm_sketch sketch = empty_sketch();
+            sketch.scale.noise = noisy ? 5e-4 : 0;
+            add_leaf(&sketch, 0, 0, 10e-3, 8e-3, 0);
+            for (int k = 0; k < 20 && leaves == 2; k++)
+                for (int j = 2; j <= 4; j++) add(&sketch, k * STEP, j * STEP, 0, true, 1);
+            for (int k = 0; k < 16 && leaves == 2; k++) /* slants away from the first */
+                for (int j = 0; j < 16; j++)
+                    add(&sketch, 10e-3 + k * STEP, 4.6e-3 + k * STEP / 2 + j * STEP, 0, false, 1);
+            link_all(&sketch);
+            grow(&sketch);
+            for (size_t i = 0; i < sketch.working.count; i++) group[i] = 0;
+            size_t groups = 1;
+            assert_ok(plm_blade_hills(&sketch, distance, &groups, &error));
+            print_message("%d leaves, %s: %zu groups, %zu points of another\n", leaves, noisy ? "noisy" : "sharp",
+                          groups, count_wrong(&sketch));
+            assert_int_equal(groups, noisy ? leaves : 1);
+            if (noisy) assert_true(count_wrong(&sketch) < sketch.working.count / 10);
+            plm_graph_free(&sketch.graph);
+        }
+}
+
 /* One petiole whose sides the scan tore apart is one. */
 static void a_torn_petiole_is_one(void **unused)
 {
@@ -247,34 +303,57 @@ static void a_leaflet_belongs_to_the_rachis_that_leads_to_it(void **unused)
     }
 }
 
-/* Depth cameras see leaves of this rosette touch: F1 was 0.71. */
-static void touching_leaves_of_a_virtual_rosette_are_found(void **unused)
+typedef struct touching_case {
+    const char *kind;
+    plm_scanner scanner;
+    uint64_t seed;
+    size_t points;
+    double f1, before; /* least F1, and what it was */
+} touching_case;
+
+/* Leaves that touch: in the first case depth cameras see them so. In the next two a border went to the neck of a petiole, and three
+ * leaves on one foot were one. The last leaf of the soybean is the third plant's: its leaflets hung on a stem that had run on. */
+static void touching_leaves_of_virtual_plants_are_found(void **unused)
 {
     (void)unused;
-    plm_error error = {0};
-    label_score score;
-    const plm_scan_options options = {
-        .scanner = PLM_SCANNER_RGBD, .seed = 303, .points = 45000, .noise = 5e-4, .views = 12};
-    virtual_plant made = virtual_plant_make("arabidopsis", 0, &options);
-    const plm_cloud *cloud = &made.scan.cloud;
-    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
-                                  &error));
-    print_message("leaves %zu of %zu, F1 %.3f\n", score.leaves_found, score.leaves, score.f1);
-    assert_true(score.f1 >= 0.88);
-    virtual_plant_free(&made);
+    static const touching_case cases[] = {
+        {"arabidopsis", PLM_SCANNER_RGBD, 303, 45000, 0.88, 0.71},
+        {"arabidopsis", PLM_SCANNER_DOME, 48003, 60000, 0.95, 0.86},
+        {"arabidopsis", PLM_SCANNER_SPLAT, 48003, 60000, 0.75, 0.58},
+        {"soybean", PLM_SCANNER_SPLAT, 48002, 60000, 0.95, 0.80},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        plm_error error = {0};
+        label_score score;
+        const plm_scan_options options = {.scanner = cases[k].scanner,
+                                          .seed = cases[k].seed,
+                                          .points = cases[k].points,
+                                          .noise = cases[k].scanner == PLM_SCANNER_DOME ? 0 : 5e-4,
+                                          .views = 12};
+        virtual_plant made = virtual_plant_make(cases[k].kind, 0, &options);
+        const plm_cloud *cloud = &made.scan.cloud;
+        assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ,
+                                      &score, &error));
+        print_message("%s: leaves %zu of %zu, F1 %.3f (%.2f before)\n", cases[k].kind, score.leaves_found, score.leaves,
+                      score.f1, cases[k].before);
+        assert_true(score.f1 >= cases[k].f1);
+        virtual_plant_free(&made);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_border_is_at_the_touch),
+        cmocka_unit_test(the_border_is_not_at_the_neck_of_a_petiole),
         cmocka_unit_test(a_border_without_a_touch_stays),
         cmocka_unit_test(a_border_of_leaflets_does_not_go_to_a_rachis),
         cmocka_unit_test(a_small_leaf_beside_a_large_one_stays),
         cmocka_unit_test(petioles_of_one_foot_are_told_apart),
+        cmocka_unit_test(blades_on_petioles_that_join_are_told_apart),
         cmocka_unit_test(a_torn_petiole_is_one),
         cmocka_unit_test(a_leaflet_belongs_to_the_rachis_that_leads_to_it),
-        cmocka_unit_test(touching_leaves_of_a_virtual_rosette_are_found),
+        cmocka_unit_test(touching_leaves_of_virtual_plants_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
