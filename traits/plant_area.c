@@ -1,13 +1,15 @@
 /* traits/plant_area.c: the plant's silhouette seen from above. */
+#include "cloud/linear.h"
 #include "traits/families.h"
-#include "traits/scene.h"
+#include "traits/plant_mesh.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { MOST_CELLS = 1 << 24 };
+enum { POINTS = 1, SURFACE = 2 }; /* what a cell is under */
 
-/** A raster over the ground plane, a byte a cell. */
+/** A raster over the ground plane, a byte a cell: a set of POINTS and SURFACE. */
 typedef struct raster {
     size_t columns, rows;
     double low[2], cell;
@@ -62,24 +64,104 @@ static plm_status spread(raster *r, double reach, bool set, plm_error *error)
     return PLM_OK;
 }
 
-/* Cells that are on, and the length of their border (4-neighbour edges x pi/4: the mean over directions). */
-static double on_area(const raster *r, double *border)
+/** What a raster shows. */
+typedef struct shadow {
+    double surface; /* area under surfaces */
+    double beside;  /* area under closed points and no surface */
+    double points;  /* area under closed points */
+    double border;  /* of those: 4-neighbour edges x pi/4, the mean over directions */
+} shadow;
+
+static shadow measure_shadow(const raster *r)
 {
-    size_t count = 0, edges = 0;
+    size_t surface = 0, beside = 0, points = 0, edges = 0;
     for (size_t y = 1; y + 1 < r->rows; y++)
         for (size_t x = 1; x + 1 < r->columns; x++) {
             const uint8_t *c = r->on + y * r->columns + x;
-            if (!*c) continue;
-            count++;
-            edges += (size_t)(!c[-1] + !c[1] + !*(c - r->columns) + !c[r->columns]);
+            surface += (*c & SURFACE) != 0;
+            beside += *c == POINTS;
+            if (!(*c & POINTS)) continue;
+            points++;
+            edges += (size_t)(!(c[-1] & POINTS) + !(c[1] & POINTS) + !(*(c - r->columns) & POINTS) +
+                              !(c[r->columns] & POINTS));
         }
-    *border = (double)edges * r->cell * 0.785398163397448;
-    return (double)count * r->cell * r->cell;
+    const double cell2 = r->cell * r->cell;
+    return (shadow){(double)surface * cell2, (double)beside * cell2, (double)points * cell2,
+                    (double)edges * r->cell * PLM_PI / 4};
 }
 
-/** Area of the silhouette seen from above: points on a raster of half the spacing, gaps closed by a disc of two spacings of the
- * sparser parts. The rim lies a quarter of a spacing inside of the edge without noise (a splat's centres: 0.85 of its
- * scale), and noise pushes it out by about its SD. Condition: border length x spacing over area. */
+/* ---- Surfaces ---------------------------------------------------------------------------------------------------- */
+
+/* Where a row of cell middles runs through a triangle: along x, from[0] to from[1]. Degenerate ones have no inside. */
+static bool cross_row(const double corner[3][2], double y, double from[2])
+{
+    from[0] = INFINITY, from[1] = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const double *p = corner[k], *q = corner[(k + 1) % 3];
+        if ((p[1] <= y) == (q[1] <= y)) continue;
+        const double x = p[0] + (q[0] - p[0]) * (y - p[1]) / (q[1] - p[1]);
+        from[0] = fmin(from[0], x);
+        from[1] = fmax(from[1], x);
+    }
+    return from[0] <= from[1];
+}
+
+/* Sets the cells whose middles lie under a triangle. */
+static void draw(raster *r, const plm_mesh *mesh, const uint32_t triangle[3])
+{
+    double corner[3][2], low = INFINITY, high = -INFINITY; /* in cells from the first one's middle */
+    for (int k = 0; k < 3; k++) {
+        for (int axis = 0; axis < 2; axis++)
+            corner[k][axis] = (mesh->vertex[triangle[k]][axis] - r->low[axis]) / r->cell - 0.5;
+        low = fmin(low, corner[k][1]);
+        high = fmax(high, corner[k][1]);
+    }
+    const double rows = (double)r->rows - 1, columns = (double)r->columns - 1;
+    for (double y = fmax(ceil(low), 0); y <= fmin(high, rows); y++) {
+        double from[2];
+        if (!cross_row((const double(*)[2])corner, y, from)) continue;
+        for (double x = fmax(ceil(from[0]), 0); x <= fmin(from[1], columns); x++)
+            r->on[(size_t)y * r->columns + (size_t)x] |= SURFACE;
+    }
+}
+
+/* ---- Points without a surface ------------------------------------------------------------------------------------ */
+
+/* Sets the cells of points that no surface stands for, gaps closed by a disc. */
+static plm_status close_points(const plm_scene *scene, double disc, raster *r, plm_error *error)
+{
+    bool *covered = plm_alloc_zero(scene->cloud->count, sizeof *covered, error);
+    if (!covered) return PLM_E_MEMORY;
+    for (size_t k = 0; k < scene->organ_count; k++)
+        for (size_t i = 0; plm_organ_has_mesh(&scene->organ[k]) && i < scene->organ[k].count; i++)
+            covered[scene->organ[k].row[i]] = true;
+    for (size_t i = 0; i < scene->plant_count; i++) {
+        if (covered[scene->plant_row[i]]) continue;
+        const size_t x = (size_t)((scene->plant[i][0] - r->low[0]) / r->cell);
+        const size_t y = (size_t)((scene->plant[i][1] - r->low[1]) / r->cell);
+        r->on[y * r->columns + x] = POINTS;
+    }
+    plm_free(covered);
+    const plm_status status = spread(r, disc, true, error);
+    return status == PLM_OK ? spread(r, disc, false, error) : status;
+}
+
+/* ---- The trait --------------------------------------------------------------------------------------------------- */
+
+/* Relative standard error of the leaves' area, 0 where it is not known. */
+static plm_status leaf_error(const plm_scene *scene, double *relative, plm_error *error)
+{
+    plm_estimate area = {.value = NAN};
+    const plm_status status = plm_trait_total_leaf_area(scene, NULL, &area, error);
+    const bool known = area.state == PLM_STATE_OK && area.value > 0 && isfinite(area.std_error);
+    *relative = known ? area.std_error / area.value : 0;
+    return status;
+}
+
+/** Area of the silhouette seen from above: of leaf surfaces and tubes, and of points that have neither, on a raster of half the
+ * spacing. Gaps between those points are closed by a disc of two spacings of the sparser parts. Their rim lies a quarter of a spacing
+ * inside of the edge without noise (a splat's centres: 0.85 of its scale), and noise pushes it out by about its SD. Condition: the
+ * leaves' area, and border length x spacing. */
 plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
@@ -88,26 +170,31 @@ plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *org
     double sparse; /* splats are uneven: gaps must be closed at the spacing of the sparser parts */
     plm_status status = plm_spacing_quantile(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
                                              0.9, &sparse, error);
+    double relative = 0;
+    if (status == PLM_OK) status = leaf_error(scene, &relative, error);
     if (status != PLM_OK) return status;
     const double disc = 2 * fmin(sparse, 4 * s), extent = scene->sampling.extent;
     raster r;
-    status = make_raster(scene, s / 2, 3 * disc, &r, error);
+    plm_mesh mesh;
+    int32_t *face_organ = NULL;
+    status = plm_scene_mesh(scene, true, &mesh, &face_organ, error);
     if (status != PLM_OK) return status;
-    for (size_t i = 0; i < scene->plant_count; i++) {
-        const size_t x = (size_t)((scene->plant[i][0] - r.low[0]) / r.cell);
-        const size_t y = (size_t)((scene->plant[i][1] - r.low[1]) / r.cell);
-        r.on[y * r.columns + x] = 1;
-    }
-    status = spread(&r, disc, true, error);
-    if (status == PLM_OK) status = spread(&r, disc, false, error);
+    status = make_raster(scene, s / 2, 3 * disc, &r, error);
     if (status == PLM_OK) {
-        double border;
-        const double area = on_area(&r, &border);
-        out->value = fmax(area + border * (0.25 * s + 0.85 * extent - 0.8 * sigma), 0);
-        out->std_error = border * sqrt(0.15 * 0.15 * s * s + 0.3 * 0.3 * sigma * sigma + 0.04 * extent * extent +
-                                       0.01 * disc * disc);
-        out->method = "closed raster";
+        status = close_points(scene, disc, &r, error);
+        for (size_t f = 0; f < mesh.triangle_count; f++) draw(&r, &mesh, mesh.triangle[f]);
+        const shadow seen = measure_shadow(&r);
+        const double share = seen.points > 0 ? seen.beside / seen.points : 0;
+        const double rim = share * seen.border * (0.25 * s + 0.85 * extent - 0.8 * sigma);
+        const double rim_error =
+            share * seen.border *
+            sqrt(0.15 * 0.15 * s * s + 0.3 * 0.3 * sigma * sigma + 0.04 * extent * extent + 0.01 * disc * disc);
+        out->value = seen.surface + fmax(seen.beside + rim, 0);
+        out->std_error = hypot(seen.surface * relative, rim_error);
+        out->method = mesh.triangle_count ? "shadow of surfaces and tubes" : "closed raster";
+        plm_free(r.on);
     }
-    plm_free(r.on);
+    plm_free(face_organ);
+    plm_mesh_free(&mesh);
     return status;
 }
