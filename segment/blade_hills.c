@@ -42,8 +42,8 @@ static plm_status find_hills(work *w, const float *distance, size_t *hills, plm_
     return plm_merge_tree_by(&s->graph, &rule, w->hill, hills, error);
 }
 
-/* The hills that are blades get numbers of groups: the first of a group its own. Gives whether any group is parted. */
-static bool number_hills(work *w, size_t hills, size_t before, size_t *groups)
+/* The hills that are blades get numbers of groups: the first of a group its own. */
+static void number_hills(work *w, size_t hills, size_t before, size_t *groups)
 {
     const plm_sketch *s = w->sketch;
     const double cell = s->working.cell, least = plm_blade_least(s) / (cell * cell);
@@ -64,31 +64,22 @@ static bool number_hills(work *w, size_t hills, size_t before, size_t *groups)
         w->number[h] = w->is_parted[group] ? (int32_t)(*groups)++ : group;
         if (w->first[group] < 0) w->first[group] = (int32_t)h;
     }
-    return *groups > before;
 }
 
-/* Points of a parted group to its hill that is nearest along the graph. */
-static plm_status share_out(work *w, plm_error *error)
+/* Points of a parted group to its hill that is nearest along the graph within it. */
+static plm_status share_out(work *w, int32_t group, plm_error *error)
 {
     plm_sketch *s = w->sketch;
     size_t sources = 0;
     for (uint32_t i = 0; i < s->working.count; i++) {
-        w->allowed[i] = s->group[i] >= 0 && w->is_parted[s->group[i]];
+        w->allowed[i] = s->group[i] == group;
         if (w->allowed[i] && w->hill[i] >= 0 && w->owner[w->hill[i]] >= 0) w->source[sources++] = i;
     }
     const plm_walk walk = {
         .source = w->source, .source_count = sources, .allowed = w->allowed, .distance = w->far, .origin = w->origin};
     const plm_status status = plm_graph_walk(&s->graph, &walk, error);
-    for (size_t i = 0; status == PLM_OK && i < s->working.count; i++) {
-        if (!w->allowed[i] || w->origin[i] < 0) continue;
-        const int32_t hill = w->hill[w->source[w->origin[i]]];
-        if (w->owner[hill] == s->group[i])
-            w->origin[i] = w->number[hill];
-        else
-            w->origin[i] = -1;
-    }
     for (size_t i = 0; status == PLM_OK && i < s->working.count; i++)
-        if (w->allowed[i] && w->origin[i] >= 0) s->group[i] = w->origin[i];
+        if (w->allowed[i] && w->origin[i] >= 0) s->group[i] = w->number[w->hill[w->source[w->origin[i]]]];
     return status;
 }
 
@@ -112,7 +103,9 @@ plm_status plm_blade_hills(plm_sketch *sketch, const float *distance, size_t *gr
         w.source = plm_scratch_take(&w.scratch, count, sizeof *w.source);
         status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
     }
-    if (status == PLM_OK && number_hills(&w, hills, before, groups)) status = share_out(&w, error);
+    if (status == PLM_OK) number_hills(&w, hills, before, groups);
+    for (size_t g = 0; status == PLM_OK && g < before; g++)
+        if (w.is_parted[g]) status = share_out(&w, (int32_t)g, error);
     plm_scratch_free(&w.scratch, NULL);
     return status;
 }

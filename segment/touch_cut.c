@@ -1,8 +1,8 @@
 /* segment/touch_cut.c: the foot that is nearest along the graph may be that of another leaf: where two leaves touch, the one
  * with the shorter way takes a part of the other's blade, and the border of the two leads through that blade. A touch holds
- * less than a blade: so if far fewer edges are cut where one of the two gives the other all that lies beyond a neck of it,
- * the border is there. The neck is the minimum cut (Dinic's maximum flow) between the giver's part near the trunk and the
- * other organ. Between compound leaves points have a price instead. */
+ * less than a blade: so the border goes where far fewer edges are cut, by minimum cuts (Dinic's maximum flow) in which what is near
+ * the trunk keeps its organ and each point that changes its own has a price. Of several prices, and none, the border is taken that is
+ * narrowest against the lesser blade beside it: without a price it may be the neck of a petiole. */
 #include "segment/touch_cut.h"
 
 #include "segment/scratch.h"
@@ -11,9 +11,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double ROOT = 0.8;    /* of a border's least distance from the trunk: nearer, the giver keeps its points */
+static const double ROOT =
+    0.8; /* of the distance from the trunk at which a border begins: nearer, points keep their organ */
 static const double BEGIN = 0.03;  /* quantile of its points' distances: near the core single points are no tube */
-static const double GAIN = 0.5;    /* of what holds across the present border, at most */
+static const double GAIN = 0.5;    /* of what holds across the present border, and of its narrowness, at most */
 static const double LEAST_CUT = 5; /* in edges of one cell: a border of less is a touch */
 static const double SMALL =
     5; /* least blades: a young leaf of a rosette is hardly wider than its foot, and may have two */
@@ -294,7 +295,8 @@ static size_t lesser_blade(const cut *c)
 /* A touch is narrow against the blades that it parts, while a neck of a petiole leaves hardly a blade to one of the two. */
 static double narrowness(const cut *c)
 {
-    return c->holds / sqrt((double)lesser_blade(c));
+    const size_t lesser = lesser_blade(c);
+    return lesser ? c->holds / sqrt((double)lesser) : INFINITY;
 }
 
 static void keep_sides(net *n)
@@ -317,11 +319,12 @@ static bool find_leaflets(net *n, const organ_border *border, const float *dista
  * All of a blade is given only where it is a piece of the other: it hangs on the trunk by a touch, or is small for two feet. */
 static bool find_touch(net *n, const organ_border *border, const float *distance, const cut *present)
 {
-    static const double OFFER[][2] = {{0, INFINITY}, {INFINITY, 0}, {6, 6}, {1.5, 1.5}, {0.4, 0.4}};
+    static const double OFFER[][2] = {{0, INFINITY}, {INFINITY, 0}, {PRICE, PRICE}, {1.5, 1.5}, {0.4, 0.4}};
     const double limit = GAIN * present->holds;
     const double cell2 = n->sketch->working.cell * n->sketch->working.cell,
                  small = SMALL * plm_blade_least(n->sketch) / cell2;
-    const bool is_small = !n->sketch->stem.count && (double)lesser_blade(present) < small;
+    const bool may_lose = !n->sketch->stem.count; /* on a stem a petiole bears a leaf */
+    const bool is_small = (double)lesser_blade(present) < small;
     double narrowest = GAIN * narrowness(present), least = INFINITY;
     bool is_touch = false;
     for (size_t k = 0; k < sizeof OFFER / sizeof *OFFER; k++) {
@@ -335,7 +338,8 @@ static bool find_touch(net *n, const organ_border *border, const float *distance
             narrowest = narrowness(&found);
             is_touch = true;
         } else {
-            if (is_touch || !is_neck || !(is_small || found.holds < LEAST_CUT) || !(found.holds < least)) continue;
+            if (is_touch || !is_neck || !may_lose || !(found.holds < least)) continue;
+            if (!is_small && !(found.holds < LEAST_CUT)) continue;
             least = found.holds;
         }
         keep_sides(n);

@@ -1,5 +1,6 @@
 /* traits/plant_area.c: the plant's silhouette seen from above. */
 #include "cloud/linear.h"
+#include "traits/axis.h"
 #include "traits/families.h"
 #include "traits/plant_mesh.h"
 
@@ -7,6 +8,7 @@
 #include <string.h>
 
 enum { MOST_CELLS = 1 << 24 };
+static const double SLACK = 0.1;
 enum { POINTS = 1, SURFACE = 2 }; /* what a cell is under */
 
 /** A raster over the ground plane, a byte a cell: a set of POINTS and SURFACE. */
@@ -16,7 +18,9 @@ typedef struct raster {
     uint8_t *on;
 } raster;
 
-static plm_status make_raster(const plm_scene *scene, double cell, double margin, raster *r, plm_error *error)
+/* Room for the points and the surfaces: but for these not more than SLACK of the points' extent beyond it. */
+static plm_status make_raster(const plm_scene *scene, const plm_mesh *mesh, double cell, double margin, raster *r,
+                              plm_error *error)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t i = 0; i < scene->plant_count; i++)
@@ -24,10 +28,25 @@ static plm_status make_raster(const plm_scene *scene, double cell, double margin
             low[k] = fmin(low[k], scene->plant[i][k]);
             high[k] = fmax(high[k], scene->plant[i][k]);
         }
+    for (int k = 0; k < 2; k++) {
+        const double least = low[k] - SLACK * (high[k] - low[k]), most = high[k] + SLACK * (high[k] - low[k]);
+        for (size_t v = 0; v < mesh->vertex_count; v++) {
+            low[k] = fmin(low[k], fmax(mesh->vertex[v][k], least));
+            high[k] = fmax(high[k], fmin(mesh->vertex[v][k], most));
+        }
+    }
     const double width = high[0] - low[0] + 2 * margin, depth = high[1] - low[1] + 2 * margin;
     cell = fmax(cell, sqrt(width * depth / MOST_CELLS));
     *r = (raster){.columns = (size_t)(width / cell) + 3, .rows = (size_t)(depth / cell) + 3, .cell = cell};
     for (int k = 0; k < 2; k++) r->low[k] = low[k] - margin;
+    r->on = plm_alloc_zero(r->columns * r->rows, 1, error);
+    return r->on ? PLM_OK : PLM_E_MEMORY;
+}
+
+/* An empty raster of the same cells. */
+static plm_status make_alike(const raster *of, raster *r, plm_error *error)
+{
+    *r = *of;
     r->on = plm_alloc_zero(r->columns * r->rows, 1, error);
     return r->on ? PLM_OK : PLM_E_MEMORY;
 }
@@ -127,38 +146,70 @@ static void draw(raster *r, const plm_mesh *mesh, const uint32_t triangle[3])
 
 /* ---- Points without a surface ------------------------------------------------------------------------------------ */
 
-/* Sets the cells of points that no surface stands for, gaps closed by a disc. */
+static uint8_t *cell_of(const raster *r, const float xyz[3])
+{
+    const size_t x = (size_t)((xyz[0] - r->low[0]) / r->cell), y = (size_t)((xyz[1] - r->low[1]) / r->cell);
+    return r->on + y * r->columns + x;
+}
+
+/* Points of organs that have a surface: those near its shadow have nothing to add to it. */
+static plm_status find_covered(const plm_scene *scene, const raster *drawn, double reach, bool *covered,
+                               plm_error *error)
+{
+    raster near;
+    plm_status status = make_alike(drawn, &near, error);
+    if (status != PLM_OK) return status;
+    memcpy(near.on, drawn->on, near.columns * near.rows);
+    status = spread(&near, reach, true, error);
+    for (size_t k = 0; status == PLM_OK && k < scene->organ_count; k++) {
+        const plm_organ *organ = &scene->organ[k];
+        for (size_t i = 0; plm_organ_has_mesh(organ) && i < organ->count; i++)
+            covered[organ->row[i]] = *cell_of(&near, organ->xyz[i]) != 0;
+    }
+    plm_free(near.on);
+    return status;
+}
+
+/* Sets POINTS in the cells of points that no surface stands for, gaps closed by a disc. */
 static plm_status close_points(const plm_scene *scene, double disc, raster *r, plm_error *error)
 {
+    raster closed = {0};
     bool *covered = plm_alloc_zero(scene->cloud->count, sizeof *covered, error);
-    if (!covered) return PLM_E_MEMORY;
-    for (size_t k = 0; k < scene->organ_count; k++)
-        for (size_t i = 0; plm_organ_has_mesh(&scene->organ[k]) && i < scene->organ[k].count; i++)
-            covered[scene->organ[k].row[i]] = true;
-    for (size_t i = 0; i < scene->plant_count; i++) {
-        if (covered[scene->plant_row[i]]) continue;
-        const size_t x = (size_t)((scene->plant[i][0] - r->low[0]) / r->cell);
-        const size_t y = (size_t)((scene->plant[i][1] - r->low[1]) / r->cell);
-        r->on[y * r->columns + x] = POINTS;
-    }
+    plm_status status = covered ? make_alike(r, &closed, error) : PLM_E_MEMORY;
+    if (status == PLM_OK) status = find_covered(scene, r, disc + 3 * scene->sampling.noise, covered, error);
+    for (size_t i = 0; status == PLM_OK && i < scene->plant_count; i++)
+        if (!covered[scene->plant_row[i]]) *cell_of(&closed, scene->plant[i]) = POINTS;
+    if (status == PLM_OK) status = spread(&closed, disc, true, error);
+    if (status == PLM_OK) status = spread(&closed, disc, false, error);
+    for (size_t c = 0; status == PLM_OK && c < r->columns * r->rows; c++)
+        if (closed.on[c]) r->on[c] |= POINTS;
+    plm_free(closed.on);
     plm_free(covered);
-    const plm_status status = spread(r, disc, true, error);
-    return status == PLM_OK ? spread(r, disc, false, error) : status;
+    return status;
 }
 
 /* ---- The trait --------------------------------------------------------------------------------------------------- */
 
-/* Relative standard error of the leaves' area, 0 where it is not known. */
-static plm_status leaf_error(const plm_scene *scene, double *relative, plm_error *error)
+/* Standard error of the surfaces' shadow, which is `area`: that of the leaves' area, and of the tubes' radii; NAN where it is not
+ * known. */
+static plm_status surface_error(const plm_scene *scene, double area, double *std_error, plm_error *error)
 {
-    plm_estimate area = {.value = NAN};
-    const plm_status status = plm_trait_total_leaf_area(scene, NULL, &area, error);
-    const bool known = area.state == PLM_STATE_OK && area.value > 0 && isfinite(area.std_error);
-    *relative = known ? area.std_error / area.value : 0;
+    plm_estimate leaves = {.value = NAN};
+    const plm_status status = plm_trait_total_leaf_area(scene, NULL, &leaves, error);
+    const bool has_leaves = leaves.state == PLM_STATE_OK && leaves.value > 0;
+    double squares = has_leaves ? pow(area * leaves.std_error / leaves.value, 2) : 0;
+    bool known = has_leaves;
+    for (size_t k = 0; k < scene->organ_count; k++) {
+        const plm_axis *axis = scene->organ[k].axis;
+        if (!axis || !isfinite(axis->radius_error)) continue;
+        squares += pow(2 * axis->length * axis->radius_error, 2);
+        known = true;
+    }
+    *std_error = known || !(area > 0) ? sqrt(squares) : NAN;
     return status;
 }
 
-/** Area of the silhouette seen from above: of leaf surfaces and tubes, and of points that have neither, on a raster of half the
+/** Area of the silhouette seen from above: of leaf surfaces and tubes, and of points that are under neither, on a raster of half the
  * spacing. Gaps between those points are closed by a disc of two spacings of the sparser parts. Their rim lies a quarter of a spacing
  * inside of the edge without noise (a splat's centres: 0.85 of its scale), and noise pushes it out by about its SD. Condition: the
  * leaves' area, and border length x spacing. */
@@ -170,8 +221,6 @@ plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *org
     double sparse; /* splats are uneven: gaps must be closed at the spacing of the sparser parts */
     plm_status status = plm_spacing_quantile(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
                                              0.9, &sparse, error);
-    double relative = 0;
-    if (status == PLM_OK) status = leaf_error(scene, &relative, error);
     if (status != PLM_OK) return status;
     const double disc = 2 * fmin(sparse, 4 * s), extent = scene->sampling.extent;
     raster r;
@@ -179,18 +228,20 @@ plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *org
     int32_t *face_organ = NULL;
     status = plm_scene_mesh(scene, true, &mesh, &face_organ, error);
     if (status != PLM_OK) return status;
-    status = make_raster(scene, s / 2, 3 * disc, &r, error);
+    status = make_raster(scene, &mesh, s / 2, 3 * disc, &r, error);
     if (status == PLM_OK) {
-        status = close_points(scene, disc, &r, error);
         for (size_t f = 0; f < mesh.triangle_count; f++) draw(&r, &mesh, mesh.triangle[f]);
+        status = close_points(scene, disc, &r, error);
         const shadow seen = measure_shadow(&r);
+        double of_surfaces = 0;
+        if (status == PLM_OK) status = surface_error(scene, seen.surface, &of_surfaces, error);
         const double share = seen.points > 0 ? seen.beside / seen.points : 0;
         const double rim = share * seen.border * (0.25 * s + 0.85 * extent - 0.8 * sigma);
         const double rim_error =
             share * seen.border *
             sqrt(0.15 * 0.15 * s * s + 0.3 * 0.3 * sigma * sigma + 0.04 * extent * extent + 0.01 * disc * disc);
         out->value = seen.surface + fmax(seen.beside + rim, 0);
-        out->std_error = hypot(seen.surface * relative, rim_error);
+        out->std_error = hypot(of_surfaces, rim_error);
         out->method = mesh.triangle_count ? "shadow of surfaces and tubes" : "closed raster";
         plm_free(r.on);
     }
