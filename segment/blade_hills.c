@@ -11,18 +11,18 @@
 
 /* How far both tips are beyond the touch, in R: within single blades of 48 rosettes in noise at most 0.6, between two 0.8 to 5. */
 static const double RISE = 0.7;
-static const double NOISY =
-    0.04; /* noise in R: petioles of sharper scans part (segment/forked_feet.c), and gaps look like touches */
+/* Noise in R: petioles of sharper scans part (segment/forked_feet.c), and gaps in them look like touches. */
+static const double NOISY = 0.04;
 
 typedef struct work {
     plm_sketch *sketch;
     plm_scratch scratch;
     float *far;
     int32_t *hill, *number, *origin;
-    int32_t *first;  /* of each group: its first hill with a blade, -1 */
     int32_t *owner;  /* of each hill: the group that it is of; -1: no blade */
     size_t *blade;   /* points of blade of each hill */
-    bool *is_parted; /* of each group */
+    bool *has_hill;  /* of each group: one that is a blade */
+    bool *is_parted; /* of each group: it has another */
     bool *allowed;
     uint32_t *source;
 } work;
@@ -30,7 +30,6 @@ typedef struct work {
 static plm_status find_hills(work *w, const float *distance, size_t *hills, plm_error *error)
 {
     const plm_sketch *s = w->sketch;
-    const double cell = s->working.cell;
     float *reach = plm_scratch_take(&w->scratch, s->working.count, sizeof *reach);
     if (!reach) return PLM_E_MEMORY;
     for (size_t i = 0; i < s->working.count; i++) {
@@ -38,31 +37,29 @@ static plm_status find_hills(work *w, const float *distance, size_t *hills, plm_
         reach[i] = (float)(RISE * s->scale.radius);
     }
     const plm_merge_rule rule = {
-        .distance = w->far, .reach = reach, .apart = s->group, .least = (size_t)(plm_blade_least(s) / (cell * cell))};
+        .distance = w->far, .reach = reach, .apart = s->group, .least = (size_t)plm_blade_least_points(s)};
     return plm_merge_tree_by(&s->graph, &rule, w->hill, hills, error);
 }
 
 /* The hills that are blades get numbers of groups: the first of a group its own. */
-static void number_hills(work *w, size_t hills, size_t before, size_t *groups)
+static void number_hills(work *w, size_t hills, size_t *groups)
 {
     const plm_sketch *s = w->sketch;
-    const double cell = s->working.cell, least = plm_blade_least(s) / (cell * cell);
     for (size_t h = 0; h < hills; h++) w->owner[h] = -1;
     for (size_t i = 0; i < s->working.count; i++) {
         if (w->hill[i] < 0) continue;
         w->owner[w->hill[i]] = s->group[i];
         w->blade[w->hill[i]] += !s->is_tube[i];
     }
-    for (size_t g = 0; g < before; g++) w->first[g] = -1;
     for (size_t h = 0; h < hills; h++) {
         const int32_t group = w->owner[h];
-        if (group < 0 || (double)w->blade[h] < least) {
+        if ((double)w->blade[h] < plm_blade_least_points(s)) {
             w->owner[h] = -1;
             continue;
         }
-        w->is_parted[group] = w->first[group] >= 0;
-        w->number[h] = w->is_parted[group] ? (int32_t)(*groups)++ : group;
-        if (w->first[group] < 0) w->first[group] = (int32_t)h;
+        w->is_parted[group] = w->has_hill[group];
+        w->number[h] = w->has_hill[group] ? (int32_t)(*groups)++ : group;
+        w->has_hill[group] = true;
     }
 }
 
@@ -96,14 +93,14 @@ plm_status plm_blade_hills(plm_sketch *sketch, const float *distance, size_t *gr
         w.number = plm_scratch_take(&w.scratch, hills + 1, sizeof *w.number);
         w.owner = plm_scratch_take(&w.scratch, hills + 1, sizeof *w.owner);
         w.blade = plm_scratch_take(&w.scratch, hills + 1, sizeof *w.blade);
-        w.first = plm_scratch_take(&w.scratch, before + 1, sizeof *w.first);
+        w.has_hill = plm_scratch_take(&w.scratch, before + 1, sizeof *w.has_hill);
         w.is_parted = plm_scratch_take(&w.scratch, before + 1, sizeof *w.is_parted);
         w.allowed = plm_scratch_take(&w.scratch, count, sizeof *w.allowed);
         w.origin = plm_scratch_take(&w.scratch, count, sizeof *w.origin);
         w.source = plm_scratch_take(&w.scratch, count, sizeof *w.source);
         status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
     }
-    if (status == PLM_OK) number_hills(&w, hills, before, groups);
+    if (status == PLM_OK) number_hills(&w, hills, groups);
     for (size_t g = 0; status == PLM_OK && g < before; g++)
         if (w.is_parted[g]) status = share_out(&w, (int32_t)g, error);
     plm_scratch_free(&w.scratch, NULL);

@@ -67,9 +67,8 @@ static void link_closely(work *w, double longest)
 static plm_status find_hills(work *w, size_t *hills, plm_error *error)
 {
     const plm_sketch *sketch = w->way->sketch;
-    const double cell = sketch->working.cell;
     const plm_merge_rule rule = {
-        .distance = w->distance, .reach = w->rise, .least = (size_t)(plm_blade_least(sketch) / (cell * cell))};
+        .distance = w->distance, .reach = w->rise, .least = (size_t)plm_blade_least_points(sketch)};
     plm_status status = plm_merge_tree_by(&w->graph, &rule, w->hill, hills, error);
     size_t sources = 0;
     for (uint32_t i = 0; i < sketch->working.count && status == PLM_OK; i++)

@@ -36,6 +36,11 @@ double plm_blade_least(const plm_sketch *sketch)
     return BLADE_LEAST * sketch->scale.radius * sketch->scale.radius;
 }
 
+double plm_blade_least_points(const plm_sketch *sketch)
+{
+    return plm_blade_least(sketch) / (sketch->working.cell * sketch->working.cell);
+}
+
 void plm_side_groups_free(plm_side_groups *groups)
 {
     plm_free(groups->group);
@@ -250,13 +255,13 @@ static plm_status add_loose_groups(work *w, size_t feet, plm_error *error)
 }
 
 /* Groups that were parted in some stage get descriptions of their own. */
-static plm_status judge_anew(work *w, size_t before, const size_t *feet, plm_error *error)
+static plm_status judge_anew(work *w, size_t before, size_t feet, plm_error *error)
 {
-    if (*feet == before) return PLM_OK;
-    plm_side_group *grown = plm_realloc(w->out->group, *feet + 1, sizeof *grown, error);
+    if (feet == before) return PLM_OK;
+    plm_side_group *grown = plm_realloc(w->out->group, feet + 1, sizeof *grown, error);
     if (!grown) return PLM_E_MEMORY;
     w->out->group = grown;
-    for (size_t f = 0; f < *feet; f++) judge(w, (int32_t)f, &grown[f]);
+    for (size_t f = 0; f < feet; f++) judge(w, (int32_t)f, &grown[f]);
     return PLM_OK;
 }
 
@@ -265,7 +270,7 @@ static plm_status split_forks(work *w, size_t *feet, plm_error *error)
 {
     const size_t before = *feet;
     const plm_status status = plm_forked_feet(w->sketch, w->out->distance, w->component, feet, error);
-    return status == PLM_OK ? judge_anew(w, before, feet, error) : status;
+    return status == PLM_OK ? judge_anew(w, before, *feet, error) : status;
 }
 
 /* So do those whose blades touch too, and their border goes to the touch. */
@@ -275,7 +280,7 @@ static plm_status split_hills(work *w, size_t *feet, plm_error *error)
     plm_status status = plm_blade_hills(w->sketch, w->out->distance, feet, error);
     if (status != PLM_OK || *feet == before) return status;
     status = plm_touch_cut(w->sketch, false, w->out->distance, w->sketch->group, error);
-    return status == PLM_OK ? judge_anew(w, before, feet, error) : status;
+    return status == PLM_OK ? judge_anew(w, before, *feet, error) : status;
 }
 
 static plm_status find_groups(work *w, plm_error *error)

@@ -43,4 +43,7 @@ void plm_side_groups_free(plm_side_groups *groups);
 /** Blades smaller than this are no leaves. */
 double plm_blade_least(const plm_sketch *sketch);
 
+/** The same in working points. */
+double plm_blade_least_points(const plm_sketch *sketch);
+
 #endif

@@ -11,13 +11,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double ROOT =
-    0.8; /* of the distance from the trunk at which a border begins: nearer, points keep their organ */
+static const double ROOT = 0.8;    /* of where a border begins: points nearer to the trunk keep their organ */
 static const double BEGIN = 0.03;  /* quantile of its points' distances: near the core single points are no tube */
 static const double GAIN = 0.5;    /* of what holds across the present border, and of its narrowness, at most */
 static const double LEAST_CUT = 5; /* in edges of one cell: a border of less is a touch */
-static const double SMALL =
-    5; /* least blades: a young leaf of a rosette is hardly wider than its foot, and may have two */
+static const double SMALL = 5;     /* least blades: a leaf that is hardly wider than its foot may have two */
 /* A leaflet's point that changes its leaf costs PRICE / present edges, present being what holds across the present border: so it means
  * the same at any spacing, as points grow with the square of the width and edges with the width. */
 static const double PRICE = 6;
@@ -281,7 +279,7 @@ static bool find_cut(net *n, const organ_border *border, const float *distance, 
 /* Whether either organ that had a blade keeps one. */
 static bool keeps_blades(const plm_sketch *sketch, const cut *before, const cut *after)
 {
-    const double least = plm_blade_least(sketch) / (sketch->working.cell * sketch->working.cell);
+    const double least = plm_blade_least_points(sketch);
     for (int side = 0; side < 2; side++)
         if (!((double)before->blade[side] < least) && (double)after->blade[side] < least) return false;
     return true;
@@ -319,16 +317,14 @@ static bool find_leaflets(net *n, const organ_border *border, const float *dista
  * All of a blade is given only where it is a piece of the other: it hangs on the trunk by a touch, or is small for two feet. */
 static bool find_touch(net *n, const organ_border *border, const float *distance, const cut *present)
 {
-    static const double OFFER[][2] = {{0, INFINITY}, {INFINITY, 0}, {PRICE, PRICE}, {1.5, 1.5}, {0.4, 0.4}};
+    const double offer[][2] = {{0, INFINITY}, {INFINITY, 0}, {PRICE, PRICE}, {PRICE / 4, PRICE / 4}};
     const double limit = GAIN * present->holds;
-    const double cell2 = n->sketch->working.cell * n->sketch->working.cell,
-                 small = SMALL * plm_blade_least(n->sketch) / cell2;
     const bool may_lose = !n->sketch->stem.count; /* on a stem a petiole bears a leaf */
-    const bool is_small = (double)lesser_blade(present) < small;
+    const bool is_small = (double)lesser_blade(present) < SMALL * plm_blade_least_points(n->sketch);
     double narrowest = GAIN * narrowness(present), least = INFINITY;
     bool is_touch = false;
-    for (size_t k = 0; k < sizeof OFFER / sizeof *OFFER; k++) {
-        const double price[2] = {OFFER[k][0] / present->holds, OFFER[k][1] / present->holds};
+    for (size_t k = 0; k < sizeof offer / sizeof *offer; k++) {
+        const double price[2] = {offer[k][0] / present->holds, offer[k][1] / present->holds};
         const bool is_neck = isinf(price[0]) || isinf(price[1]);
         cut found;
         if (!find_cut(n, border, distance, price, is_neck ? limit : INFINITY, &found)) continue;

@@ -35,17 +35,15 @@ typedef struct work {
 static plm_status find_ends(work *w, uint32_t core, plm_error *error)
 {
     const plm_sketch *s = w->sketch;
-    const double R = s->scale.radius, cell = s->working.cell;
+    const double R = s->scale.radius;
     const plm_walk walk = {.source = &core, .source_count = 1, .distance = w->distance};
     plm_status status = plm_graph_walk(&s->graph, &walk, error);
     for (size_t i = 0; i < s->working.count; i++) {
         w->reach[i] = s->is_tube[i] ? (float)(STANDS_OUT * R) : INFINITY;
         w->apart[i] = w->distance[i] > TOGETHER * R ? s->group[i] : -1;
     }
-    const plm_merge_rule rule = {.distance = w->distance,
-                                 .reach = w->reach,
-                                 .apart = w->apart,
-                                 .least = (size_t)(plm_blade_least(s) / (cell * cell))};
+    const plm_merge_rule rule = {
+        .distance = w->distance, .reach = w->reach, .apart = w->apart, .least = (size_t)plm_blade_least_points(s)};
     if (status == PLM_OK) status = plm_merge_tree_by(&s->graph, &rule, w->branch, &w->ends, error);
     return status;
 }
