@@ -7,6 +7,7 @@
 #include "traits/axis.h"
 #include "traits/evaluate.h"
 #include "traits/plan.h"
+#include "traits/plant_mesh.h"
 #include "traits/rosette_base.h"
 
 #include <math.h>

@@ -8,7 +8,8 @@
 #include <string.h>
 
 enum { MOST_CELLS = 1 << 24 };
-static const double SLACK = 0.1;
+static const double SLACK = 0.1;  /* of the points' extent: a wild surface beyond it is cut off */
+static const double SIDES = 0.02; /* what a tube of plm_scene_mesh may be too wide or narrow, seen from one side */
 enum { POINTS = 1, SURFACE = 2 }; /* what a cell is under */
 
 /** A raster over the ground plane, a byte a cell: a set of POINTS and SURFACE. */
@@ -18,7 +19,7 @@ typedef struct raster {
     uint8_t *on;
 } raster;
 
-/* Room for the points and the surfaces: but for these not more than SLACK of the points' extent beyond it. */
+/* Room for the points, and for the surfaces up to SLACK beyond them. */
 static plm_status make_raster(const plm_scene *scene, const plm_mesh *mesh, double cell, double margin, raster *r,
                               plm_error *error)
 {
@@ -163,7 +164,7 @@ static plm_status find_covered(const plm_scene *scene, const raster *drawn, doub
     status = spread(&near, reach, true, error);
     for (size_t k = 0; status == PLM_OK && k < scene->organ_count; k++) {
         const plm_organ *organ = &scene->organ[k];
-        for (size_t i = 0; plm_organ_has_mesh(organ) && i < organ->count; i++)
+        for (size_t i = 0; plm_organ_has_mesh(scene, organ) && i < organ->count; i++)
             covered[organ->row[i]] = *cell_of(&near, organ->xyz[i]) != 0;
     }
     plm_free(near.on);
@@ -201,12 +202,28 @@ static plm_status surface_error(const plm_scene *scene, double area, double *std
     bool known = has_leaves;
     for (size_t k = 0; k < scene->organ_count; k++) {
         const plm_axis *axis = scene->organ[k].axis;
-        if (!axis || !isfinite(axis->radius_error)) continue;
-        squares += pow(2 * axis->length * axis->radius_error, 2);
+        if (!axis || !plm_organ_has_mesh(scene, &scene->organ[k]) || !isfinite(axis->radius_error)) continue;
+        squares += pow(2 * axis->length * hypot(axis->radius_error, SIDES * axis->radius), 2);
         known = true;
     }
     *std_error = known || !(area > 0) ? sqrt(squares) : NAN;
     return status;
+}
+
+/* The rim of closed points lies inside of the edge by what sampling leaves out, and noise pushes it out. */
+static plm_status estimate_area(const plm_scene *scene, const shadow *seen, double disc, plm_estimate *out,
+                                plm_error *error)
+{
+    const double s = scene->sampling.spacing, sigma = scene->sampling.noise, extent = scene->sampling.extent;
+    const double border = seen->points > 0 ? seen->border * seen->beside / seen->points : 0;
+    const double rim_error =
+        border * sqrt(0.15 * 0.15 * s * s + 0.3 * 0.3 * sigma * sigma + 0.04 * extent * extent + 0.01 * disc * disc);
+    double of_surfaces;
+    const plm_status status = surface_error(scene, seen->surface, &of_surfaces, error);
+    if (status != PLM_OK) return status;
+    out->value = seen->surface + fmax(seen->beside + border * (0.25 * s + 0.85 * extent - 0.8 * sigma), 0);
+    out->std_error = hypot(of_surfaces, rim_error);
+    return PLM_OK;
 }
 
 /** Area of the silhouette seen from above: of leaf surfaces and tubes, and of points that are under neither, on a raster of half the
@@ -216,36 +233,26 @@ static plm_status surface_error(const plm_scene *scene, double area, double *std
 plm_status plm_trait_projected_area(const plm_scene *scene, const plm_organ *organ, plm_estimate *out, plm_error *error)
 {
     (void)organ;
-    const double s = scene->sampling.spacing, sigma = scene->sampling.noise;
+    const double s = scene->sampling.spacing;
     if (!(s > 0)) return plm_trait_failed(out, "the points are too few to know their spacing");
     double sparse; /* splats are uneven: gaps must be closed at the spacing of the sparser parts */
     plm_status status = plm_spacing_quantile(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
                                              0.9, &sparse, error);
     if (status != PLM_OK) return status;
-    const double disc = 2 * fmin(sparse, 4 * s), extent = scene->sampling.extent;
-    raster r;
     plm_mesh mesh;
-    int32_t *face_organ = NULL;
-    status = plm_scene_mesh(scene, true, &mesh, &face_organ, error);
+    status = plm_scene_mesh(scene, true, &mesh, error);
     if (status != PLM_OK) return status;
+    const double disc = 2 * fmin(sparse, 4 * s);
+    raster r;
     status = make_raster(scene, &mesh, s / 2, 3 * disc, &r, error);
     if (status == PLM_OK) {
         for (size_t f = 0; f < mesh.triangle_count; f++) draw(&r, &mesh, mesh.triangle[f]);
         status = close_points(scene, disc, &r, error);
         const shadow seen = measure_shadow(&r);
-        double of_surfaces = 0;
-        if (status == PLM_OK) status = surface_error(scene, seen.surface, &of_surfaces, error);
-        const double share = seen.points > 0 ? seen.beside / seen.points : 0;
-        const double rim = share * seen.border * (0.25 * s + 0.85 * extent - 0.8 * sigma);
-        const double rim_error =
-            share * seen.border *
-            sqrt(0.15 * 0.15 * s * s + 0.3 * 0.3 * sigma * sigma + 0.04 * extent * extent + 0.01 * disc * disc);
-        out->value = seen.surface + fmax(seen.beside + rim, 0);
-        out->std_error = hypot(of_surfaces, rim_error);
+        if (status == PLM_OK) status = estimate_area(scene, &seen, disc, out, error);
         out->method = mesh.triangle_count ? "shadow of surfaces and tubes" : "closed raster";
         plm_free(r.on);
     }
-    plm_free(face_organ);
     plm_mesh_free(&mesh);
     return status;
 }

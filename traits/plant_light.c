@@ -11,13 +11,12 @@
 plm_status plm_scene_light(plm_scene *scene, plm_error *error)
 {
     plm_mesh mesh;
-    int32_t *face_group = NULL;
     if (!scene->options->light) {
         snprintf(scene->light_reason, sizeof scene->light_reason,
                  "no ray tracer was given (plm_measure_options.light)");
         return PLM_OK;
     }
-    plm_status status = plm_scene_mesh(scene, false, &mesh, &face_group, error);
+    plm_status status = plm_scene_mesh(scene, false, &mesh, error);
     if (status != PLM_OK) return status;
     double *power = plm_alloc(scene->organ_count, sizeof *power, error);
     double *std_error = plm_alloc(scene->organ_count, sizeof *std_error, error);
@@ -26,15 +25,14 @@ plm_status plm_scene_light(plm_scene *scene, plm_error *error)
     else if (mesh.triangle_count == 0)
         snprintf(scene->light_reason, sizeof scene->light_reason, "no organ has a surface");
     else
-        status = scene->options->light(&mesh, face_group, scene->organ_count, scene->options->seed, power, std_error,
-                                       &scene->absorbed, &scene->absorbed_error, error);
+        status = scene->options->light(&mesh, mesh.face_organ, scene->organ_count, scene->options->seed, power,
+                                       std_error, &scene->absorbed, &scene->absorbed_error, error);
     for (size_t k = 0; status == PLM_OK && mesh.triangle_count && k < scene->organ_count; k++) {
         scene->organ[k].absorbed = power[k];
         scene->organ[k].absorbed_error = std_error[k];
     }
     plm_free(power);
     plm_free(std_error);
-    plm_free(face_group);
     plm_mesh_free(&mesh);
     return status;
 }

@@ -4,13 +4,15 @@
 
 #include "traits/scene.h"
 
-/** All leaf surfaces, and stems and petioles as tubes about their fitted lines, in the frame of the scene's offsets. closed: tubes
- * have ends. face_organ: the
- * place of each face's organ in scene->organ. Both the caller's (plm_mesh_free, plm_free); a mesh without faces where no organ has a
+/** All leaf surfaces, and stems and petioles as tubes about their fitted lines (but those that their points do not lie on), in the frame of the scene's offsets; closed: tubes have
+ * ends. face_organ: the place of each face's organ in scene->organ. The caller's (plm_mesh_free); without faces where no organ has a
  * surface. PLM_E_MEMORY, and PLM_E_LIBRARY for more vertices than a mesh holds. */
-plm_status plm_scene_mesh(const plm_scene *scene, bool closed, plm_mesh *mesh, int32_t **face_organ, plm_error *error);
+plm_status plm_scene_mesh(const plm_scene *scene, bool closed, plm_mesh *mesh, plm_error *error);
 
-/** Whether an organ has a part in that mesh. */
-bool plm_organ_has_mesh(const plm_organ *organ);
+/** All leaf surfaces at the cloud's origin. face_organ: the leaf's number. As plm_scene_mesh else. */
+plm_status plm_scene_leaf_mesh(const plm_scene *scene, plm_mesh *mesh, plm_error *error);
+
+/** Whether an organ has a part in plm_scene_mesh. */
+bool plm_organ_has_mesh(const plm_scene *scene, const plm_organ *organ);
 
 #endif

@@ -82,9 +82,6 @@ plm_status plm_scene_organs(plm_scene *scene, const plm_segmentation *segmentati
 /** Makes the surfaces and midribs of all leaves; a leaf that has none says why in surface_reason. Parallel over leaves. */
 plm_status plm_scene_surfaces(plm_scene *scene, plm_error *error);
 
-/** All leaf surfaces as one mesh at the cloud's origin, face_organ the leaf's number; the caller's. */
-plm_status plm_scene_leaf_mesh(const plm_scene *scene, plm_mesh *mesh, plm_error *error);
-
 /** Measures the hull (traits/plant_hull.c) and the smoothness factors (traits/plant_smoothness.c) of the plant. What the points
  * do not determine is left for the traits to tell. */
 plm_status plm_scene_hull(plm_scene *scene, plm_error *error);

@@ -63,6 +63,40 @@ static void leaves_stems_and_the_rest_cast_their_shadow(void **unused)
     assert_true(fabs(made.value - truth) < 3 * made.std_error);
 }
 
+/* A tube about the x axis, 2 mm across. */
+static size_t put_level_tube(plm_cloud *cloud, size_t at, double x, double y, plm_label label)
+{
+    enum { AROUND = 16, RINGS = 61 };
+    for (int i = 0; i < RINGS; i++)
+        for (int j = 0; j < AROUND; j++) {
+            const double angle = 2 * PI * j / AROUND;
+            put(cloud, at++, (double[3]){x + 5e-4 * i, y + 1e-3 * cos(angle), 0.05 + 1e-3 * sin(angle)}, label, 0);
+        }
+    return at;
+}
+
+/* A surface does not stand for points of its organ that lie elsewhere: two strands of one petiole, of which no tube is about both. And a
+ * stem alone has a standard error. */
+static void points_off_the_surface_of_their_organ_count(void **unused)
+{
+    (void)unused;
+    enum { TUBE = 16 * 61 };
+    for (int strands = 1; strands <= 2; strands++) {
+        plm_error error = {0};
+        plm_cloud cloud;
+        const plm_label label = strands == 1 ? PLM_LABEL_STEM : PLM_LABEL_PETIOLE;
+        size_t at = 0;
+        assert_ok(plm_cloud_create((size_t)strands * TUBE, PLM_HAS_LABEL | PLM_HAS_ORGAN, &cloud, &error));
+        for (int k = 0; k < strands; k++) at = put_level_tube(&cloud, at, 0.01 * k, 0.012 * k, label);
+        const plm_estimate made = shadow_of(&cloud);
+        const double truth = strands * 0.03 * 0.002;
+        print_message("%d strands: %.3f cm2 of %.3f, standard error %.3f, %s\n", strands, 1e4 * made.value, 1e4 * truth,
+                      1e4 * made.std_error, made.method);
+        assert_near(made.value, truth, 0.15 * truth);
+        assert_true(fabs(made.value - truth) < 3 * made.std_error && made.std_error < 0.2 * truth);
+    }
+}
+
 typedef struct shadow_case {
     const char *kind;
     plm_scanner scanner;
@@ -106,6 +140,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(leaves_stems_and_the_rest_cast_their_shadow),
+        cmocka_unit_test(points_off_the_surface_of_their_organ_count),
         cmocka_unit_test(shadows_of_virtual_plants_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
