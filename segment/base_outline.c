@@ -34,6 +34,8 @@ static const double SLOPE[] = {0.3, 0.4, 0.5, 0.65, 0.85, 1.1, 1.5, 2.2, 3.5};
 static const double BEND[] = {0, 0.12, 0.25, 0.5, 0.9};
 /* Where the blade's width is told: from so far before the first guess on, in windows of two such bins. */
 static const double WIDTH_FROM = -1, WIDTH_BIN = 0.25;
+/* What of a narrow blade tells its direction. */
+static const double TURN_FROM = 0.1, TURN_TO = 2.75;
 enum {
     WIDTH_BINS = 15,
     WEDGES = sizeof WEDGE / sizeof *WEDGE,
@@ -68,6 +70,7 @@ typedef struct outline {
     double petiole, blade, elsewhere; /* points per square metre */
     double fullness;                  /* of voxels: see filled */
     double foot;                      /* where the petiole begins, or what is looked at */
+    int columns;                      /* that are compared: see blade_columns */
     pixel *side[2];
     size_t pixels[2];
     double before[IMAGE_ROWS], within[COLUMNS]; /* shares of the petiole that lie at a row, at a column */
@@ -75,23 +78,51 @@ typedef struct outline {
     double level[2];                            /* log likelihoods of either side are over these */
 } outline;
 
-/* By windows along: points of a strip lie half of its half width off the middle, on the mean. */
-bool plm_base_is_wide(const plm_base_view *view)
+/* Half width of the blade where it is widest, by windows along, each about its own middle. */
+static double half_width(const plm_base_view *view)
 {
-    double sum[WIDTH_BINS + 1] = {0};
+    double sum[WIDTH_BINS + 1][2] = {{0}}, widest = 0;
     size_t count[WIDTH_BINS + 1] = {0};
-    const double reach = COLUMNS * COLUMN * view->scale;
     for (size_t i = 0; i < view->count; i++) {
-        const double place = floor((view->place[i][0] / view->scale - WIDTH_FROM) / WIDTH_BIN);
-        if (!(place >= 0 && place <= WIDTH_BINS)) continue;
-        sum[(int)place] += fabs(view->place[i][1]);
-        count[(int)place]++;
+        const double bin = floor((view->place[i][0] / view->scale - WIDTH_FROM) / WIDTH_BIN), y = view->place[i][1];
+        if (!(bin >= 0 && bin <= WIDTH_BINS)) continue;
+        sum[(int)bin][0] += y, sum[(int)bin][1] += y * y;
+        count[(int)bin]++;
     }
     for (int k = 0; k < WIDTH_BINS; k++) {
         const size_t points = count[k] + count[k + 1];
-        if (points >= FEWEST && 2 * (sum[k] + sum[k + 1]) >= reach * (double)points) return true;
+        if (points < FEWEST) continue;
+        const double mean = (sum[k][0] + sum[k + 1][0]) / (double)points;
+        const double variance = (sum[k][1] + sum[k + 1][1]) / (double)points - mean * mean;
+        widest = fmax(widest, 3 * variance); /* as of a strip */
     }
-    return false;
+    return sqrt(widest);
+}
+
+bool plm_base_is_wide(const plm_base_view *view)
+{
+    return half_width(view) >= COLUMNS * COLUMN * view->scale;
+}
+
+double plm_base_turn(const plm_base_view *view)
+{
+    const double most = TURN_TO * view->scale;
+    double x = 0, y = 0;
+    if (plm_base_is_wide(view)) return 0;
+    for (size_t i = 0; i < view->count; i++) {
+        const double *p = view->place[i];
+        if (p[0] > TURN_FROM * view->scale && hypot(p[0], p[1]) < most) x += p[0], y += p[1];
+    }
+    return x > 0 ? atan2(y, x) : 0;
+}
+
+/* Outlines know no far side: beyond what a narrow blade reaches to, where it is widest and its noise hides no edge, nothing is
+ * compared. */
+static int blade_columns(const outline *o)
+{
+    if (o->view->is_rosettes) return COLUMNS; /* its narrow blades are not compared at all */
+    const double reach = (half_width(o->view) - o->blur) / o->column;
+    return reach < COLUMNS ? (int)fmax(reach, 0) : COLUMNS;
 }
 
 static double below(double x)
@@ -147,7 +178,7 @@ static void count_pixels(outline *o, int (*count)[COLUMNS])
         for (size_t i = 0; i < v->count; i++) {
             const double row = floor((v->place[i][0] + BACK * v->scale) / o->step);
             const double column = floor(fabs(v->place[i][1]) / o->column);
-            if ((v->place[i][1] < 0) != s || !(row >= 0 && row < ROWS && column < COLUMNS)) continue;
+            if ((v->place[i][1] < 0) != s || !(row >= 0 && row < ROWS && column < o->columns)) continue;
             count[(int)row][(int)column]++;
         }
         for (int row = 0; row < ROWS; row++)
@@ -241,7 +272,7 @@ static void draw(outline *o, size_t which, float (*sharp)[COLUMNS])
         double sum = 0;
         for (int column = 0; column < COLUMNS; column++) {
             const double density = density_at(o, o->before[row] * o->within[column], (double)m->density[row][column]);
-            sum += density;
+            if (column < o->columns) sum += density;
             m->density[row][column] = logf((float)density);
         }
         m->expected[row + 1] = m->expected[row] + sum * o->step * o->column;
@@ -319,6 +350,7 @@ plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_ta
                        .fullness = fullness_of(view->gathering),
                        .image = images,
                        .side = {pixels, pixels + (size_t)ROWS * COLUMNS}};
+        o->columns = blade_columns(o);
         if (find_densities(o)) {
             count_pixels(o, count);
             fill_strip(o);

@@ -216,17 +216,35 @@ double plm_base_blur(double noise, double pitch)
     return hypot(noise, PITCH_ALONG * pitch);
 }
 
-static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, const frame *f, double expected,
+/* Turns the way ahead in the blade's plane. */
+static void turn_ahead(frame *f, double angle)
+{
+    const double c = cos(angle), s = sin(angle);
+    for (int a = 0; a < 3; a++) {
+        const double ahead = f->ahead[a], across = f->ahead_across[a];
+        f->ahead[a] = c * ahead + s * across;
+        f->ahead_across[a] = c * across - s * ahead;
+    }
+}
+
+/* A narrow blade lies straight ahead: f is turned to it. */
+static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, frame *f, double expected,
                               plm_base_table *table, bool *told, plm_error *error)
 {
     plm_base_view view = {.scale = scale->radius,
                           .radius = f->radius,
                           .noise = scale->noise,
                           .blur = plm_base_blur(scale->noise, leaf->is_rosettes ? 0 : scale->pitch),
-                          .gathering = scale->gathering};
+                          .gathering = scale->gathering,
+                          .is_rosettes = leaf->is_rosettes};
     view.place = plm_alloc(leaf->count, sizeof *view.place, error);
     if (!view.place) return PLM_E_MEMORY;
     view.count = flatten_near(leaf, scale, f, view.place);
+    const double turn = leaf->is_rosettes ? 0 : plm_base_turn(&view);
+    if (turn != 0) {
+        turn_ahead(f, turn);
+        view.count = flatten_near(leaf, scale, f, view.place);
+    }
     *told = false;
     const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
     const plm_status status = any ? plm_base_look(&view, expected, table, told, error) : PLM_OK;

@@ -24,6 +24,7 @@ typedef struct plm_base_view {
     double noise;     /**< across the blade */
     double blur;      /**< along it */
     double gathering; /**< of voxel means (cloud/sampling.h), else 0 */
+    bool is_rosettes; /**< whose narrow blades are not looked at (see plm_base_is_wide) */
 } plm_base_view;
 
 enum { PLM_BASE_ROWS = 75, PLM_BASE_OUTLINES = 57 };
@@ -61,6 +62,11 @@ double plm_base_mean(const plm_base_table *table, const double share[PLM_BASE_OU
 /** Whether the blade reaches to the sides of all that is compared with outlines. A smaller one ends within it, and an outline,
  * which knows no tip, would put its base where it ends. */
 bool plm_base_is_wide(const plm_base_view *view);
+
+/** The angle by which a narrow blade lies aside of the way ahead, towards positive places across; 0 of one that reaches to the
+ * sides of all that is compared. The line of a short petiole in noise is off by tens of degrees, and beside a narrow blade an
+ * outline would find nothing on one side. */
+double plm_base_turn(const plm_base_view *view);
 
 /** A point in the petiole's strip. */
 typedef struct plm_base_height {
