@@ -34,8 +34,10 @@ static const double SLOPE[] = {0.3, 0.4, 0.5, 0.65, 0.85, 1.1, 1.5, 2.2, 3.5};
 static const double BEND[] = {0, 0.12, 0.25, 0.5, 0.9};
 /* Where the blade's width is told: from so far before the first guess on, in windows of two such bins. */
 static const double WIDTH_FROM = -1, WIDTH_BIN = 0.25;
-/* What of a narrow blade tells its direction. */
-static const double TURN_FROM = 0.1, TURN_TO = 2.75;
+/* Points of such a window, of the fullest: among fewer a stray one makes it wide. */
+static const double FULL_ENOUGH = 0.2;
+/* What of a narrow blade tells its direction, and by how much (radians) it is turned at most: what lies farther aside is bent. */
+static const double TURN_FROM = 0.1, TURN_TO = 2.75, TURN_MOST = 0.8;
 enum {
     WIDTH_BINS = 15,
     WEDGES = sizeof WEDGE / sizeof *WEDGE,
@@ -78,7 +80,7 @@ typedef struct outline {
     double level[2];                            /* log likelihoods of either side are over these */
 } outline;
 
-/* Half width of the blade where it is widest, by windows along, each about its own middle. */
+/* Half width of the blade where it is widest, by windows along, each about its own middle; wider by the noise. */
 static double half_width(const plm_base_view *view)
 {
     double sum[WIDTH_BINS + 1][2] = {{0}}, widest = 0;
@@ -89,9 +91,12 @@ static double half_width(const plm_base_view *view)
         sum[(int)bin][0] += y, sum[(int)bin][1] += y * y;
         count[(int)bin]++;
     }
+    size_t fullest = 0;
+    for (int k = 0; k < WIDTH_BINS; k++)
+        fullest = count[k] + count[k + 1] > fullest ? count[k] + count[k + 1] : fullest;
     for (int k = 0; k < WIDTH_BINS; k++) {
         const size_t points = count[k] + count[k + 1];
-        if (points < FEWEST) continue;
+        if (points < FEWEST || (double)points < FULL_ENOUGH * (double)fullest) continue;
         const double mean = (sum[k][0] + sum[k + 1][0]) / (double)points;
         const double variance = (sum[k][1] + sum[k + 1][1]) / (double)points - mean * mean;
         widest = fmax(widest, 3 * variance); /* as of a strip */
@@ -108,19 +113,20 @@ double plm_base_turn(const plm_base_view *view)
 {
     const double most = TURN_TO * view->scale;
     double x = 0, y = 0;
-    if (plm_base_is_wide(view)) return 0;
+    if (!plm_base_is_noisy(view) || plm_base_is_wide(view)) return 0;
     for (size_t i = 0; i < view->count; i++) {
         const double *p = view->place[i];
         if (p[0] > TURN_FROM * view->scale && hypot(p[0], p[1]) < most) x += p[0], y += p[1];
     }
-    return x > 0 ? atan2(y, x) : 0;
+    const double turn = atan2(y, x);
+    return fabs(turn) < TURN_MOST ? turn : 0;
 }
 
-/* Outlines know no far side: beyond what a narrow blade reaches to, where it is widest and its noise hides no edge, nothing is
- * compared. */
+/* Outlines know no far side: beyond what a narrow blade reaches to, where it is widest and the blur leaves its edge full, nothing
+ * is compared. Without noise thickness tells more than outlines, and all is. */
 static int blade_columns(const outline *o)
 {
-    if (o->view->is_rosettes) return COLUMNS; /* its narrow blades are not compared at all */
+    if (o->view->is_rosettes || !plm_base_is_noisy(o->view)) return COLUMNS; /* a rosette's narrow ones are not asked */
     const double reach = (half_width(o->view) - o->blur) / o->column;
     return reach < COLUMNS ? (int)fmax(reach, 0) : COLUMNS;
 }
@@ -137,11 +143,11 @@ static double filled(double share, double fullness)
     return fullness > 0 ? expm1(-fullness * share) / expm1(-fullness) : share;
 }
 
-/* Densities of petiole and blade. false where either is too short or has too few points. */
+/* Densities of petiole and blade. false where either is too short or has too few points, or the blade is no wider. */
 static bool find_densities(outline *o)
 {
     const plm_base_view *v = o->view;
-    const double R = v->scale, strip = v->radius + 2 * v->noise;
+    const double R = v->scale, strip = v->radius + 2 * v->noise, side = fmin(BLADE_SIDE * R, o->columns * o->column);
     size_t petiole = 0, blade = 0;
     double foot = PETIOLE_TO * R;
     for (size_t i = 0; i < v->count; i++) {
@@ -150,11 +156,11 @@ static bool find_densities(outline *o)
             petiole++;
             foot = fmin(foot, x);
         }
-        blade += x > BLADE_FROM * R && x < BLADE_TO * R && y < BLADE_SIDE * R;
+        blade += x > BLADE_FROM * R && x < BLADE_TO * R && y < side;
     }
     const double length = PETIOLE_TO * R - foot;
-    if (petiole < FEWEST || blade < FEWEST || length < SHORTEST * R) return false;
-    o->blade = (double)blade / ((BLADE_TO - BLADE_FROM) * 2 * BLADE_SIDE * R * R);
+    if (petiole < FEWEST || blade < FEWEST || length < SHORTEST * R || side < v->radius) return false;
+    o->blade = (double)blade / ((BLADE_TO - BLADE_FROM) * R * 2 * side);
     o->petiole = fmax((double)petiole / (length * 2 * v->radius), FAINTEST * o->blade);
     o->elsewhere = ELSEWHERE * o->blade;
     o->foot = foot;

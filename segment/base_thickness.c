@@ -51,11 +51,16 @@ static void weigh(plm_base_height *list, const double *rest, size_t count, doubl
     }
 }
 
+bool plm_base_is_noisy(const plm_base_view *view)
+{
+    return view->noise > CLEAR_NOISE * view->radius;
+}
+
 size_t plm_base_heights(const plm_base_view *v, plm_base_height *list, double *rest, double *cumulated)
 {
     const double R = v->scale;
     size_t count = 0;
-    if (v->noise > CLEAR_NOISE * v->radius) return 0;
+    if (plm_base_is_noisy(v)) return 0;
     for (size_t i = 0; i < v->count; i++) {
         const double *p = v->place[i];
         if (fabs(p[1]) < v->radius && fabs(p[0]) < REACH * R) list[count++] = (plm_base_height){p[0], p[2], 1};

@@ -63,9 +63,12 @@ double plm_base_mean(const plm_base_table *table, const double share[PLM_BASE_OU
  * which knows no tip, would put its base where it ends. */
 bool plm_base_is_wide(const plm_base_view *view);
 
-/** The angle by which a narrow blade lies aside of the way ahead, towards positive places across; 0 of one that reaches to the
- * sides of all that is compared. The line of a short petiole in noise is off by tens of degrees, and beside a narrow blade an
- * outline would find nothing on one side. */
+/** Whether the noise is wide against the petiole, so that thickness tells nothing and its line is known badly. */
+bool plm_base_is_noisy(const plm_base_view *view);
+
+/** In noise, the angle by which a narrow blade lies aside of the way ahead, towards positive places across; 0 of one that
+ * reaches to the sides of all that is compared. The line of a short petiole in noise is off by tens of degrees, and beside a
+ * narrow blade an outline would find nothing on one side. */
 double plm_base_turn(const plm_base_view *view);
 
 /** A point in the petiole's strip. */

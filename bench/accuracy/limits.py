@@ -13,9 +13,9 @@ leaf inclination    RMSE of what noise alone does to the principal plane of a le
                     (l_a C_nn + l_n C_aa + C_aa C_nn + C_an^2) / (N (l_a - l_n)^2), N points (of fused scans: pixels). The
                     noise of simulated depth cameras is along their rays, that of splats along the normal and at least a
                     quarter of it across. Sampling, lost rims and errors of views come on top.
-of known shapes     the same of a leaf whose shape is known as well, to the last curl, and only its shift and its turns are not: RMSE
-                    of least squares by the true points' distances along the true normals, and what they scatter by (which is
-                    the Cramer-Rao bound of independent noise of the plant's SD). No estimate from a cloud knows as much.
+of known shapes     the same of a leaf whose shape and place in its plane are known as well, and only its shift off that plane
+                    and its turns out of it are not: RMSE of least squares by the true points' distances along the true
+                    normals, and what independent noise of the plant's SD would leave (its Cramer-Rao bound).
 stem diameter       of stems of 2 to 4 mm: how far twice the mean over sides of the median distance of the stem's true points
                     from its true axis, at the height of the diameter, is off between plants (SD: the mean offset, which a
                     model of the noise can take off, is left out).
@@ -109,10 +109,17 @@ def turn_of_known_shape(vertex, corner, points):
 
 
 def solve_turn(distance, rows, noise):
-    """The turn and its variance; without points that lie off by more than FAR times the noise."""
-    kept = np.abs(distance) < FAR * noise
-    inverse = np.linalg.pinv(rows[kept].T @ rows[kept])
-    return (inverse @ rows[kept].T @ distance[kept])[1], noise**2 * inverse[1, 1]
+    """The turn and its variance, in a second round without points that are off by more than FAR times the noise; what the
+    points do not determine is not known."""
+    found, kept = np.zeros(3), np.ones(len(distance), bool)
+    for _ in range(2):
+        matrix = rows[kept].T @ rows[kept]
+        if np.count_nonzero(kept) < FEWEST or np.linalg.matrix_rank(matrix) < 3:
+            return MOST, MOST**2
+        inverse = np.linalg.inv(matrix)
+        found = inverse @ rows[kept].T @ distance[kept]
+        kept = np.abs(distance - rows @ found) < FAR * noise
+    return float(np.clip(found[1], -MOST, MOST)), min(noise**2 * inverse[1, 1], MOST**2)
 
 
 def typical_noise(distances):
@@ -136,12 +143,12 @@ def stem_offset(stem, points):
 
 
 def add_known(plant, leaves, known):
-    """leaves: organ and what turn_of_known_shape gives, of all leaves of a plant."""
-    noise = typical_noise([distance for _, distance, _ in leaves])
-    for _, distance, rows in leaves:
-        if noise > 0 and np.count_nonzero(np.abs(distance) < FAR * noise) >= FEWEST:
+    """leaves: what turn_of_known_shape gives, of all leaves of a plant."""
+    noise = typical_noise([distance for distance, _ in leaves])
+    for distance, rows in leaves:
+        if noise > 0:
             turn, variance = solve_turn(distance, rows, noise)
-            known[plant["scan"]["mode"]].append((turn**2, min(variance, MOST**2), plant["kind"]))
+            known[plant["scan"]["mode"]].append((turn**2, variance, plant["kind"]))
 
 
 def add_plant(path, leaves, stems, known):
@@ -160,7 +167,8 @@ def add_plant(path, leaves, stems, known):
             variance = inclination_variance(moments, covariance, organ["points"] * pixels)
             leaves[scan["mode"]].append((variance, truth["kind"], truth["plant_id"], organ["organ_id"]))
             own = xyz[(cloud["label"] == LEAF) & (cloud["organ"] == organ["organ_id"])]
-            shapes.append((organ, *turn_of_known_shape(vertex, face["corner"][mine], own)))
+            if len(own):
+                shapes.append(turn_of_known_shape(vertex, face["corner"][mine], own))
         if organ["organ"] == "stem" and bars.THIN_STEM[0] <= organ.get("stem_diameter", 0) <= bars.THIN_STEM[1]:
             offset = stem_offset(organ, xyz[cloud["label"] == STEM])
             if offset is not None:
