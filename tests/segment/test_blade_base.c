@@ -432,6 +432,19 @@ static void a_narrow_blade_lies_ahead_of_a_short_petiole(void **state)
     }
 }
 
+static void a_stray_point_makes_no_blade_wide(void **state)
+{
+    (void)state;
+    double place[121][3] = {{0}};
+    for (int i = 0; i < 120; i++) place[i][0] = (0.01 * i + 0.05) * R, place[i][1] = (i % 2 ? 0.5 : -0.5) * R;
+    for (int i = 114; i < 120; i++) place[i][0] = 2.5 * R; /* a few at the tip, ... */
+    place[120][0] = 2.5 * R, place[120][1] = 4 * R;        /* ... and one beside it */
+    const plm_base_view blade = {.count = 121, .place = place, .scale = R, .radius = TUBE};
+    assert_false(plm_base_is_wide(&blade));
+    for (int i = 0; i < 114; i++) place[i][1] *= 4;
+    assert_true(plm_base_is_wide(&blade));
+}
+
 /* An outline knows no tip: asked for these two, it takes a fifth of the points for petiole. */
 static void a_rosettes_small_blades_stay_as_they_are(void **state)
 {
@@ -460,6 +473,7 @@ int main(void)
         cmocka_unit_test(borders_know_the_voxels_but_a_rosettes),
         cmocka_unit_test(too_little_tells_none),
         cmocka_unit_test(a_narrow_blade_lies_ahead_of_a_short_petiole),
+        cmocka_unit_test(a_stray_point_makes_no_blade_wide),
         cmocka_unit_test(a_rosettes_small_blades_stay_as_they_are),
         cmocka_unit_test(a_rosettes_wide_blade_is_told_where_its_petiole_is_clear_of_noise),
     };
