@@ -126,9 +126,8 @@ double plm_base_turn(const plm_base_view *view)
  * is compared. Without noise thickness tells more than outlines, and all is. */
 static int blade_columns(const outline *o)
 {
-    if (o->view->is_rosettes || !plm_base_is_noisy(o->view)) return COLUMNS; /* a rosette's narrow ones are not asked */
-    const double reach = (half_width(o->view) - o->blur) / o->column;
-    return reach < COLUMNS ? (int)fmax(reach, 0) : COLUMNS;
+    if (!plm_base_is_noisy(o->view) || plm_base_is_wide(o->view)) return COLUMNS;
+    return (int)fmax((half_width(o->view) - o->blur) / o->column, 0);
 }
 
 static double below(double x)

@@ -235,18 +235,17 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, f
                           .radius = f->radius,
                           .noise = scale->noise,
                           .blur = plm_base_blur(scale->noise, leaf->is_rosettes ? 0 : scale->pitch),
-                          .gathering = scale->gathering,
-                          .is_rosettes = leaf->is_rosettes};
+                          .gathering = scale->gathering};
     view.place = plm_alloc(leaf->count, sizeof *view.place, error);
     if (!view.place) return PLM_E_MEMORY;
     view.count = flatten_near(leaf, scale, f, view.place);
-    const double turn = leaf->is_rosettes ? 0 : plm_base_turn(&view);
+    const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
+    const double turn = any ? plm_base_turn(&view) : 0;
     if (turn != 0) {
         turn_ahead(f, turn);
         view.count = flatten_near(leaf, scale, f, view.place);
     }
     *told = false;
-    const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
     const plm_status status = any ? plm_base_look(&view, expected, table, told, error) : PLM_OK;
     plm_free(view.place);
     return status;

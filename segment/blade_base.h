@@ -24,7 +24,6 @@ typedef struct plm_base_view {
     double noise;     /**< across the blade */
     double blur;      /**< along it */
     double gathering; /**< of voxel means (cloud/sampling.h), else 0 */
-    bool is_rosettes; /**< whose narrow blades are not looked at (see plm_base_is_wide) */
 } plm_base_view;
 
 enum { PLM_BASE_ROWS = 75, PLM_BASE_OUTLINES = 57 };

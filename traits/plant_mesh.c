@@ -9,8 +9,8 @@
 #include <string.h>
 
 enum { AROUND = 8, MOST_RINGS = 64 };
-static const double OFF =
-    2; /* of the plant's noise, and a spacing: points farther off a tube than that are none of it */
+/* Of the plant's noise, and a spacing: points farther off a tube than that are none of it. */
+static const double OFF = 2;
 
 /* Rings along a tube: about one for each two diameters, more where it is long and thin. 0: no tube, or one that the points do not lie
  * on (they are of several strands, or of a blade). */

@@ -118,13 +118,8 @@ def solve_turn(distance, rows, noise):
             return MOST, MOST**2
         inverse = np.linalg.inv(matrix)
         found = inverse @ rows[kept].T @ distance[kept]
-        kept = np.abs(distance - rows @ found) < FAR * noise
+        kept = np.abs(distance - rows @ found) <= FAR * noise
     return float(np.clip(found[1], -MOST, MOST)), min(noise**2 * inverse[1, 1], MOST**2)
-
-
-def typical_noise(distances):
-    """SD of a plant's points across its leaves, by their median."""
-    return 1.4826 * float(np.median(np.abs(np.concatenate(distances)))) if distances else 0
 
 
 def stem_offset(stem, points):
@@ -144,11 +139,12 @@ def stem_offset(stem, points):
 
 def add_known(plant, leaves, known):
     """leaves: what turn_of_known_shape gives, of all leaves of a plant."""
-    noise = typical_noise([distance for distance, _ in leaves])
+    if not leaves:
+        return
+    noise = 1.4826 * float(np.median(np.abs(np.concatenate([distance for distance, _ in leaves]))))
     for distance, rows in leaves:
-        if noise > 0:
-            turn, variance = solve_turn(distance, rows, noise)
-            known[plant["scan"]["mode"]].append((turn**2, variance, plant["kind"]))
+        turn, variance = solve_turn(distance, rows, noise)
+        known[plant["scan"]["mode"]].append((turn**2, variance, plant["kind"]))
 
 
 def add_plant(path, leaves, stems, known):
