@@ -3,7 +3,6 @@
 #define PLANTIMETER_TRAITS_EXTREME_H
 
 #include "cloud/sampling.h"
-#include "cloud/subset.h"
 
 /** The farthest surface point along a direction. */
 typedef struct plm_extreme {
@@ -37,26 +36,6 @@ typedef struct plm_extreme_options {
  * PLM_E_DEGENERATE for no points. */
 plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double direction[3],
                              const plm_extreme_options *options, plm_extreme *extreme, plm_error *error);
-
-/** A point moved onto the surface through its neighbours. */
-typedef struct plm_projection {
-    float place[3];
-    double normal[3]; /**< of the surface, unit, either side */
-    double leverage;  /**< variance that is left across the surface per variance of the points, at most 1 */
-    double flatness;  /**< variance of the neighbours across the narrower direction of the surface over that off it */
-    double axis[3];   /**< their longest principal axis, unit, either way */
-    double rest;      /**< root mean square distance of the neighbours from the surface, as weighted in the fit */
-} plm_projection;
-
-/** The points that surfaces are fitted to: all of count points, or where they lie far closer than the noise, as many of them
- * as tell the surface. As plm_subset_take. */
-plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t count, const plm_sampling *sampling,
-                          plm_subset *points, plm_error *error);
-
-/** Projects a point onto the quadric through its neighbours within 5 noise but itself, weighted down by distance, again from
- * where that leads to until it stays. False where they determine no surface or the point lies beyond 4 noise off it: it is
- * then no point of the surface (a ghost, a floater). */
-bool plm_project_to_surface(const plm_subset *points, const float point[3], double noise, plm_projection *onto);
 
 /** Whether a point (one of xyz) has neighbours as near as the surface of the plant would have them. What has not (a trail
  * of ghosts off a rim, a floater) makes no extreme and no corner of a hull. */

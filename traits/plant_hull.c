@@ -1,14 +1,15 @@
-/* traits/plant_hull.c: volume and area of the plant's convex hull. Sampling makes a hull too small, noise makes it too large:
- * points near the raw hull are projected onto local quadrics first, and what is left of both is corrected by how much a
- * random half of the points loses (a deficit that grows as n^-0.58, between wedge tips and smooth rims, wants the
- * Richardson factor 2.0), in scans without noise by what its corners lack as well (traits/hull_corners.c), and by noise times
- * area. What nothing supports (ghosts) is peeled off first. The factors for noisy clouds are fits over virtual scans (see
- * factors_of). Condition: 1 in volume; for a sheet the volume is noise over thickness, which the standard error shows. */
+/* traits/plant_hull.c: volume and area of the plant's convex hull. Sampling makes a hull too small, noise makes it too large. In noise
+ * what nothing supports (ghosts) is peeled off first, points near the hull are projected onto local quadrics, and where the surface
+ * ends at the corners is told by the points about them (traits/hull_corners.c), with the noise that is left in each. Without noise
+ * corners, and how much a random half of the points loses (a deficit that grows as n^-0.58, between wedge tips and smooth rims, wants
+ * the Richardson factor 2.0), tell half each. Condition: 1 in volume; for a sheet the volume is noise over thickness, which the standard
+ * error shows. */
 #include "cloud/random.h"
 #include "traits/extreme.h"
 #include "traits/families.h"
 #include "traits/hull_corners.h"
 #include "traits/near_hull.h"
+#include "traits/projection.h"
 #include "traits/scene.h"
 
 #include <math.h>
@@ -17,10 +18,11 @@
 
 enum { HALVES = 12, MOST_PEELS = 24 };
 
-/** The hull after projection, and of random halves. */
+/** The hull after projection. */
 typedef struct hull_measure {
-    double volume, area, half_volume, half_area, half_volume_sd;
-    double lacking, lacking_error; /* behind its corners; 0 in noise */
+    double volume, area;
+    double half_volume, half_area, half_volume_sd; /* of random halves; without noise */
+    double lacking, lacking_error;                 /* behind its corners */
 } hull_measure;
 
 /* Each random half and the other: a corner that one lacks the other has, so their mean scatters less (over 61 clean scans the
@@ -49,25 +51,53 @@ static plm_status measure_halves(const float (*xyz)[3], size_t count, uint64_t s
     return PLM_OK;
 }
 
-/* The points near the hull, projected when noisy; those that belong to no surface are left out. Gives how many. */
-static size_t project_near(const plm_scene *scene, const plm_subset *points, bool *near, float (*out)[3], bool noisy)
+/** The points near the hull, as they were projected; without noise as they are. */
+typedef struct skin {
+    float (*xyz)[3];
+    plm_projection *onto; /* NULL without noise */
+    size_t count;
+} skin;
+
+static void free_skin(skin *s)
 {
-    const int64_t count = (int64_t)scene->plant_count;
-    size_t used = 0;
-    for (int64_t i = 0; i < count; i++)
-        if (near[i]) memcpy(out[used++], scene->plant[i], sizeof *out);
-    if (!noisy) return used;
-    const int64_t candidates = (int64_t)used;
+    plm_free(s->xyz);
+    plm_free(s->onto);
+}
+
+/* Projects the skin's points; those that belong to no surface are left out. */
+static void project_skin(const plm_subset *points, double noise, bool *on_surface, skin *s)
+{
+    const int64_t candidates = (int64_t)s->count;
 #pragma omp parallel for schedule(dynamic, 64)
-    for (int64_t i = 0; i < candidates; i++) {
-        plm_projection onto;
-        near[i] = plm_project_to_surface(points, out[i], scene->sampling.noise, &onto);
-        if (near[i]) memcpy(out[i], onto.place, sizeof *out);
-    }
-    used = 0;
     for (int64_t i = 0; i < candidates; i++)
-        if (near[i]) memmove(out[used++], out[i], sizeof *out);
-    return used;
+        on_surface[i] = plm_project_to_surface(points, s->xyz[i], noise, &s->onto[i]);
+    s->count = 0;
+    for (int64_t i = 0; i < candidates; i++) {
+        if (!on_surface[i]) continue;
+        memmove(s->xyz[s->count], s->onto[i].place, sizeof *s->xyz);
+        s->onto[s->count++] = s->onto[i];
+    }
+}
+
+/* near: room for a plant's rows. */
+static plm_status take_skin(const plm_scene *scene, const bool *use, bool *near, bool noisy, skin *s, plm_error *error)
+{
+    const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
+    const float(*plant)[3] = (const float(*)[3])scene->plant;
+    size_t count;
+    plm_status status = plm_near_hull(&scene->hull, plant, use, scene->plant_count, depth, near, &count, error);
+    if (status != PLM_OK) return status;
+    s->xyz = plm_alloc(count, sizeof *s->xyz, error);
+    if (noisy) s->onto = plm_alloc(count, sizeof *s->onto, error);
+    if (!s->xyz || (noisy && !s->onto)) return PLM_E_MEMORY;
+    for (size_t i = 0; i < scene->plant_count; i++)
+        if (near[i]) memcpy(s->xyz[s->count++], plant[i], sizeof *s->xyz);
+    if (!noisy) return PLM_OK;
+    plm_subset points = {0};
+    status = plm_fit_points(scene->plant_index, plant, scene->plant_count, &scene->sampling, &points, error);
+    if (status == PLM_OK) project_skin(&points, scene->sampling.noise, near, s);
+    plm_subset_free(&points);
+    return status;
 }
 
 /* Hull of the rows in use. */
@@ -110,28 +140,35 @@ static plm_status peel(plm_scene *scene, bool *use, bool *near, plm_error *error
     return status;
 }
 
+/* What lacks at the corners: in noise of the skin's, else of the plant's points and their hull. */
+static plm_status measure_corners(const plm_scene *scene, const skin *s, const plm_mesh *hull, hull_measure *m,
+                                  plm_error *error)
+{
+    const float(*xyz)[3] = (const float(*)[3])s->xyz;
+    if (!s->onto && scene->plant_index)
+        return plm_hull_corners(&scene->hull, scene->plant_index, (const float(*)[3])scene->plant, NULL,
+                                &scene->sampling, &m->lacking, &m->lacking_error, error);
+    if (!s->onto) return PLM_OK;
+    plm_index *index;
+    plm_status status = plm_index_build(xyz, s->count, &index, error);
+    if (status != PLM_OK) return status;
+    status = plm_hull_corners(hull, index, xyz, s->onto, &scene->sampling, &m->lacking, &m->lacking_error, error);
+    plm_index_free(index);
+    return status;
+}
+
 static plm_status measure_skin(const plm_scene *scene, const bool *use, bool *near, bool noisy, hull_measure *m,
                                plm_error *error)
 {
-    const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
-    size_t count;
-    plm_status status = plm_near_hull(&scene->hull, (const float(*)[3])scene->plant, use, scene->plant_count, depth,
-                                      near, &count, error);
-    if (status != PLM_OK) return status;
-    float(*skin)[3] = plm_alloc(count, sizeof *skin, error);
-    if (!skin) return PLM_E_MEMORY;
-    plm_subset points = {0};
-    if (noisy)
-        status = plm_fit_points(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
-                                &scene->sampling, &points, error);
-    if (status == PLM_OK) count = project_near(scene, &points, near, skin, noisy);
-    plm_subset_free(&points);
-    if (status == PLM_OK) status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, NULL, error);
-    if (status == PLM_OK) status = measure_halves((const float(*)[3])skin, count, scene->options->seed, m, error);
-    if (status == PLM_OK && !noisy && scene->plant_index)
-        status = plm_hull_corners(&scene->hull, scene->plant_index, (const float(*)[3])scene->plant, &m->lacking,
-                                  &m->lacking_error, error);
-    plm_free(skin);
+    skin s = {0};
+    plm_mesh hull = {0};
+    plm_status status = take_skin(scene, use, near, noisy, &s, error);
+    const float(*xyz)[3] = (const float(*)[3])s.xyz;
+    if (status == PLM_OK) status = plm_convex_hull(xyz, s.count, &m->volume, &m->area, &hull, error);
+    if (status == PLM_OK && !noisy) status = measure_halves(xyz, s.count, scene->options->seed, m, error);
+    if (status == PLM_OK) status = measure_corners(scene, &s, &hull, m, error);
+    plm_mesh_free(&hull);
+    free_skin(&s);
     return status;
 }
 
@@ -148,86 +185,69 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
     return status;
 }
 
-/** Factors of the corrections: of the halves' deficit, of noise x area, of its square over the volume, and of the
- * reach of a splat's discs x area; the standard errors of the first two; and likewise of the hull's area, relatively. */
-typedef struct hull_factors {
-    double deficit, noise, thin, disc, deficit_error, noise_error;
-    double corners; /* of what they lack (traits/hull_corners.h) */
-    /** Deficits of less than this many shells come from smooth surfaces, where projection takes the noise away; it stays at
-     * rims and tips, which a random half of the points misses. */
-    double smooth;
-    double area_deficit, area_noise, area_noise_error;
-} hull_factors;
+/** A correction and its standard error. */
+typedef struct correction {
+    double gain, error;
+} correction;
 
-/* The area of a ball grows by two thirds of what its volume grows by; noise thickens the flat hulls of plants rather than
- * widening them. */
-static const double ball = 2.0 / 3;
+/* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (144 clean
+ * plants: 0.161 by halves, 0.146 by corners, 0.144 % by both). What the two are apart is in doubt by half. */
+static correction without_noise(const plm_scene *scene, const hull_measure *m)
+{
+    const double deficit = m->volume - m->half_volume;
+    if (!scene->plant_index) return (correction){2 * deficit, hypot(0.5 * deficit, m->half_volume_sd)};
+    return (correction){0.5 * m->lacking + deficit,
+                        hypot(hypot(m->half_volume_sd, m->lacking_error), 0.5 * m->lacking - deficit)};
+}
 
-static const double thin_error = 0.3; /* of what thin takes off */
-
+/* Of what corners lack, in voxel means: between what 216 virtual scans ask for, rosettes (0.7) and others (1); four of another family
+ * 0.8. */
+static const double fused_share = 0.85;
 /* Voxel means whose voxels are known: the more pixels a voxel has, the farther out one of them makes one. Inset in voxels =
  * pixel_inset - pixel_outset x gathering (plm_sampling), between two families of virtual depth cameras: fitted to one of them, in
  * images of 960 to 2800 columns, it would be steeper by two or three. */
 static const double pixel_inset = 0.3, pixel_outset = 0.7;
+/* How far off that is, in voxels; of voxels that are not known, in spacings (maximum likelihood on 196 virtual scans, with the corners'
+ * own errors). */
+static const double inset_unknown = 0.1, voxel_unknown = 0.3;
 
-/* thin: the noise of rims adds to a hull on both sides, the more the less lies between them: fitted, with the two before, to 191
- * virtual splats of 0.5 mm of noise from rosettes of 20 mm to maize (error 0.80 %, of each quarter by the others' fit 0.84; of 80 others
- * of 10 to 120 thousand points and 0.1 to 0.8 mm 1.2 %). Other noisy scans that are not voxel means take them too. For voxel means
- * `noise` is between what 290 scans by virtual depth cameras ask for (0.5: rosettes -0.2, others -0.4 %) and four of another family (0.2). */
-static hull_factors factors_of(const plm_scene *scene, bool noisy)
+static correction of_voxel_means(const plm_scene *scene, const hull_measure *m)
 {
-    /* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (144 clean
-     * plants: 0.161 by halves, 0.146 by corners, 0.144 % by both). */
-    if (!noisy && scene->plant_index) return (hull_factors){.corners = 0.5, .deficit = 1.0, .area_deficit = 2.0};
-    if (!noisy) return (hull_factors){.deficit = 2.0, .deficit_error = 0.5, .area_deficit = 2.0};
-    if (scene->sampling.fused)
-        return (hull_factors){
-            .noise = 0.4, .deficit_error = 0.5, .noise_error = 0.4, .area_noise = 0.09, .area_noise_error = 0.15};
-    if (scene->is_splat)
-        return (hull_factors){.deficit = 1.9,
-                              .noise = 0.4,
-                              .disc = 0.4,
-                              .deficit_error = 0.8,
-                              .noise_error = 0.4,
-                              .area_deficit = 1.9,
-                              .area_noise = 0.4 * ball,
-                              .area_noise_error = 0.13};
-    return (hull_factors){.deficit = 2.7,
-                          .noise = 1.45,
-                          .thin = 5.9,
-                          .deficit_error = 1.0,
-                          .noise_error = 0.4,
-                          .smooth = 0.13,
-                          .area_deficit = 3.5,
-                          .area_noise = 1.15,
-                          .area_noise_error = 0.35};
+    const plm_sampling *s = &scene->sampling;
+    const double inset = s->pitch * (pixel_inset - pixel_outset * s->gathering),
+                 unknown = s->pitch > 0 ? inset_unknown * s->pitch : voxel_unknown * s->spacing;
+    return (correction){fused_share * m->lacking + inset * m->area, hypot(m->lacking_error, unknown * m->area)};
 }
+
+/* What is in doubt: the corners' own errors times what, and a share of the noise (184 virtual splats of 0.2 to 0.8 mm of noise and 12 to
+ * 120 thousand points). */
+static const double corner_errors = 1.2, noise_unknown = 0.15;
+/* The centres of fitted discs stay inside a rim by this part of their radius, give or take as much (as in traits/extreme.c). */
+static const double disc_reach = 0.4;
+
+static correction in_noise(const plm_scene *scene, const hull_measure *m)
+{
+    const double shell = scene->sampling.noise * m->area, disc = disc_reach * scene->sampling.extent * m->area;
+    return (correction){m->lacking + disc, hypot(hypot(corner_errors * m->lacking_error, noise_unknown * shell), disc)};
+}
+
+/* By how much of what its volume grows by, relatively, a hull's area grows: of a ball two thirds, of the flat hulls of plants, which
+ * noise thickens rather than widens, less (184 splats 0.46, 220 scans by depth cameras 0.5). */
+static const double area_share = 0.5;
 
 /* Values and standard errors from what was measured. */
 static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
 {
     const double sigma = scene->sampling.noise;
-    const hull_factors f = factors_of(scene, noisy);
-    const double deficit = m->volume - m->half_volume, shell = noisy ? sigma * m->area : 0,
-                 disc = f.disc * scene->sampling.extent * m->area;
-    const double rims = f.smooth > 0 && shell > 0 ? deficit / (deficit + f.smooth * shell) : 1;
-    const double per_volume = m->volume > 0 ? m->area / m->volume : 0;
-    const double share = sigma * per_volume; /* of the volume, in noise */
-    const double thickened = f.thin * share * shell;
-    const double voxels = scene->sampling.pitch * (pixel_inset - pixel_outset * scene->sampling.gathering) * m->area;
-    /* Half of what the two ways to tell what a hull without noise lacks are apart. */
-    const double apart = f.corners > 0 ? f.corners * m->lacking - f.deficit * deficit : 0;
-    scene->hull_volume =
-        m->volume + f.corners * m->lacking + f.deficit * deficit - rims * (f.noise * shell + thickened) + disc + voxels;
-    scene->hull_volume_error = sqrt(
-        pow(f.deficit_error * deficit, 2) + pow(f.noise_error * shell, 2) + pow(thin_error * rims * thickened, 2) +
-        disc * disc + (noisy ? 0 : m->half_volume_sd * m->half_volume_sd) + pow(m->lacking_error, 2) + apart * apart);
+    const correction volume = !noisy                  ? without_noise(scene, m)
+                              : scene->sampling.fused ? of_voxel_means(scene, m)
+                                                      : in_noise(scene, m);
+    scene->hull_volume = m->volume + volume.gain;
+    scene->hull_volume_error = volume.error;
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
-    const double area_deficit = m->area - m->half_area, added = rims * shell * per_volume;
-    scene->hull_area =
-        m->area + f.area_deficit * area_deficit - f.area_noise * added + ball * (disc + voxels) * per_volume;
-    scene->hull_area_error =
-        sqrt(pow(0.8 * area_deficit, 2) + pow(f.area_noise_error * added, 2) + pow(ball * disc * per_volume, 2));
+    const double area_deficit = m->area - m->half_area, per_volume = m->volume > 0 ? m->area / m->volume : 0;
+    scene->hull_area = m->area + (noisy ? area_share * volume.gain * per_volume : 2 * area_deficit);
+    scene->hull_area_error = noisy ? area_share * volume.error * per_volume : 0.8 * fabs(area_deficit);
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";
 }
 
