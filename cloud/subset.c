@@ -47,7 +47,7 @@ size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint3
 plm_status plm_subset_take(const plm_index *index, const float (*xyz)[3], size_t count, double share, plm_subset *taken,
                            plm_error *error)
 {
-    *taken = (plm_subset){.xyz = xyz, .index = index};
+    *taken = (plm_subset){.xyz = xyz, .index = index, .count = count};
     if (!(share < worth_choosing) || count == 0) return PLM_OK;
     uint32_t *row = plm_alloc(count, sizeof *row, error);
     if (!row) return PLM_E_MEMORY;
@@ -59,7 +59,7 @@ plm_status plm_subset_take(const plm_index *index, const float (*xyz)[3], size_t
     plm_index *few_index = NULL;
     if (status == PLM_OK) status = plm_index_build((const float(*)[3])few, size, &few_index, error);
     if (status == PLM_OK)
-        *taken = (plm_subset){(const float(*)[3])few, few_index, few, few_index};
+        *taken = (plm_subset){(const float(*)[3])few, few_index, size, few, few_index};
     else
         plm_free(few);
     return status;

@@ -13,6 +13,7 @@ size_t plm_sample_rows(const float (*xyz)[3], size_t count, size_t wanted, uint3
 typedef struct plm_subset {
     const float (*xyz)[3];
     const plm_index *index;
+    size_t count;
     float (*few)[3]; /**< owned, as its index; NULL where all are taken */
     plm_index *few_index;
 } plm_subset;

@@ -51,53 +51,26 @@ static plm_status measure_halves(const float (*xyz)[3], size_t count, uint64_t s
     return PLM_OK;
 }
 
-/** The points near the hull, as they were projected; without noise as they are. */
-typedef struct skin {
-    float (*xyz)[3];
-    plm_projection *onto; /* NULL without noise */
-    size_t count;
-} skin;
-
-static void free_skin(skin *s)
+/* The points near the hull, projected in noise (points: that surfaces are fitted to); those that belong to no surface are left out. near:
+ * overwritten. Gives how many. */
+static size_t project_near(const plm_scene *scene, const plm_subset *points, bool *near, float (*out)[3])
 {
-    plm_free(s->xyz);
-    plm_free(s->onto);
-}
-
-/* Projects the skin's points; those that belong to no surface are left out. */
-static void project_skin(const plm_subset *points, double noise, bool *on_surface, skin *s)
-{
-    const int64_t candidates = (int64_t)s->count;
+    const int64_t count = (int64_t)scene->plant_count;
+    size_t used = 0;
+    for (int64_t i = 0; i < count; i++)
+        if (near[i]) memcpy(out[used++], scene->plant[i], sizeof *out);
+    if (!points) return used;
+    const int64_t candidates = (int64_t)used;
 #pragma omp parallel for schedule(dynamic, 64)
-    for (int64_t i = 0; i < candidates; i++)
-        on_surface[i] = plm_project_to_surface(points, s->xyz[i], noise, &s->onto[i]);
-    s->count = 0;
     for (int64_t i = 0; i < candidates; i++) {
-        if (!on_surface[i]) continue;
-        memmove(s->xyz[s->count], s->onto[i].place, sizeof *s->xyz);
-        s->onto[s->count++] = s->onto[i];
+        plm_projection onto;
+        near[i] = plm_project_to_surface(points, out[i], scene->sampling.noise, &onto);
+        if (near[i]) memcpy(out[i], onto.place, sizeof *out);
     }
-}
-
-/* near: room for a plant's rows. */
-static plm_status take_skin(const plm_scene *scene, const bool *use, bool *near, bool noisy, skin *s, plm_error *error)
-{
-    const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
-    const float(*plant)[3] = (const float(*)[3])scene->plant;
-    size_t count;
-    plm_status status = plm_near_hull(&scene->hull, plant, use, scene->plant_count, depth, near, &count, error);
-    if (status != PLM_OK) return status;
-    s->xyz = plm_alloc(count, sizeof *s->xyz, error);
-    if (noisy) s->onto = plm_alloc(count, sizeof *s->onto, error);
-    if (!s->xyz || (noisy && !s->onto)) return PLM_E_MEMORY;
-    for (size_t i = 0; i < scene->plant_count; i++)
-        if (near[i]) memcpy(s->xyz[s->count++], plant[i], sizeof *s->xyz);
-    if (!noisy) return PLM_OK;
-    plm_subset points = {0};
-    status = plm_fit_points(scene->plant_index, plant, scene->plant_count, &scene->sampling, &points, error);
-    if (status == PLM_OK) project_skin(&points, scene->sampling.noise, near, s);
-    plm_subset_free(&points);
-    return status;
+    used = 0;
+    for (int64_t i = 0; i < candidates; i++)
+        if (near[i]) memmove(out[used++], out[i], sizeof *out);
+    return used;
 }
 
 /* Hull of the rows in use. */
@@ -140,35 +113,54 @@ static plm_status peel(plm_scene *scene, bool *use, bool *near, plm_error *error
     return status;
 }
 
-/* What lacks at the corners: in noise of the skin's, else of the plant's points and their hull. */
-static plm_status measure_corners(const plm_scene *scene, const skin *s, const plm_mesh *hull, hull_measure *m,
-                                  plm_error *error)
+/* Which of the points that surfaces are fitted to were peeled off. */
+static bool *peeled_of(const plm_scene *scene, const bool *use, const plm_subset *points, plm_error *error)
 {
-    const float(*xyz)[3] = (const float(*)[3])s->xyz;
-    if (!s->onto && scene->plant_index)
-        return plm_hull_corners(&scene->hull, scene->plant_index, (const float(*)[3])scene->plant, NULL,
-                                &scene->sampling, &m->lacking, &m->lacking_error, error);
-    if (!s->onto) return PLM_OK;
-    plm_index *index;
-    plm_status status = plm_index_build(xyz, s->count, &index, error);
-    if (status != PLM_OK) return status;
-    status = plm_hull_corners(hull, index, xyz, s->onto, &scene->sampling, &m->lacking, &m->lacking_error, error);
-    plm_index_free(index);
+    bool *peeled = plm_alloc_zero(points->count, sizeof *peeled, error);
+    for (size_t i = 0; peeled && i < scene->plant_count; i++) {
+        uint32_t row;
+        float squared;
+        if (!use[i] && plm_index_nearest(points->index, scene->plant[i], 1, &row, &squared) && squared == 0)
+            peeled[row] = true;
+    }
+    return peeled;
+}
+
+/* What lacks at the corners: in noise of the projected hull, else of the plant's own. points: NULL without noise. */
+static plm_status measure_corners(const plm_scene *scene, const bool *use, const plm_subset *points,
+                                  const plm_mesh *projected, hull_measure *m, plm_error *error)
+{
+    if (!scene->plant_index) return PLM_OK;
+    if (!points)
+        return plm_hull_corners(&scene->hull, scene->plant_index, (const float(*)[3])scene->plant, &m->lacking,
+                                &m->lacking_error, error);
+    bool *peeled = peeled_of(scene, use, points, error);
+    const plm_status status = peeled ? plm_hull_noisy_corners(projected, points, peeled, &scene->sampling, &m->lacking,
+                                                              &m->lacking_error, error)
+                                     : PLM_E_MEMORY;
+    plm_free(peeled);
     return status;
 }
 
-static plm_status measure_skin(const plm_scene *scene, const bool *use, bool *near, bool noisy, hull_measure *m,
-                               plm_error *error)
+/* points: NULL without noise. */
+static plm_status measure_skin(const plm_scene *scene, const plm_subset *points, const bool *use, bool *near,
+                               hull_measure *m, plm_error *error)
 {
-    skin s = {0};
+    const double depth = 6 * fmax(scene->sampling.noise, scene->sampling.spacing);
+    size_t count;
+    plm_status status = plm_near_hull(&scene->hull, (const float(*)[3])scene->plant, use, scene->plant_count, depth,
+                                      near, &count, error);
+    if (status != PLM_OK) return status;
+    float(*skin)[3] = plm_alloc(count, sizeof *skin, error);
+    if (!skin) return PLM_E_MEMORY;
     plm_mesh hull = {0};
-    plm_status status = take_skin(scene, use, near, noisy, &s, error);
-    const float(*xyz)[3] = (const float(*)[3])s.xyz;
-    if (status == PLM_OK) status = plm_convex_hull(xyz, s.count, &m->volume, &m->area, &hull, error);
-    if (status == PLM_OK && !noisy) status = measure_halves(xyz, s.count, scene->options->seed, m, error);
-    if (status == PLM_OK) status = measure_corners(scene, &s, &hull, m, error);
+    count = project_near(scene, points, near, skin);
+    status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, &hull, error);
+    if (status == PLM_OK && !points)
+        status = measure_halves((const float(*)[3])skin, count, scene->options->seed, m, error);
+    if (status == PLM_OK) status = measure_corners(scene, use, points, &hull, m, error);
     plm_mesh_free(&hull);
-    free_skin(&s);
+    plm_free(skin);
     return status;
 }
 
@@ -178,8 +170,13 @@ static plm_status measure_hull(plm_scene *scene, bool noisy, hull_measure *m, pl
     bool *use = plm_alloc(scene->plant_count, sizeof *use, error);
     plm_status status = near && use ? PLM_OK : PLM_E_MEMORY;
     for (size_t i = 0; use && i < scene->plant_count; i++) use[i] = true;
+    plm_subset points = {0};
     if (status == PLM_OK && noisy) status = peel(scene, use, near, error);
-    if (status == PLM_OK) status = measure_skin(scene, use, near, noisy, m, error);
+    if (status == PLM_OK && noisy)
+        status = plm_fit_points(scene->plant_index, (const float(*)[3])scene->plant, scene->plant_count,
+                                &scene->sampling, &points, error);
+    if (status == PLM_OK) status = measure_skin(scene, noisy ? &points : NULL, use, near, m, error);
+    plm_subset_free(&points);
     plm_free(near);
     plm_free(use);
     return status;
@@ -190,19 +187,6 @@ typedef struct correction {
     double gain, error;
 } correction;
 
-/* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (144 clean
- * plants: 0.161 by halves, 0.146 by corners, 0.144 % by both). What the two are apart is in doubt by half. */
-static correction without_noise(const plm_scene *scene, const hull_measure *m)
-{
-    const double deficit = m->volume - m->half_volume;
-    if (!scene->plant_index) return (correction){2 * deficit, hypot(0.5 * deficit, m->half_volume_sd)};
-    return (correction){0.5 * m->lacking + deficit,
-                        hypot(hypot(m->half_volume_sd, m->lacking_error), 0.5 * m->lacking - deficit)};
-}
-
-/* Of what corners lack, in voxel means: between what 216 virtual scans ask for, rosettes (0.7) and others (1); four of another family
- * 0.8. */
-static const double fused_share = 0.85;
 /* Voxel means whose voxels are known: the more pixels a voxel has, the farther out one of them makes one. Inset in voxels =
  * pixel_inset - pixel_outset x gathering (plm_sampling), between two families of virtual depth cameras: fitted to one of them, in
  * images of 960 to 2800 columns, it would be steeper by two or three. */
@@ -211,12 +195,29 @@ static const double pixel_inset = 0.3, pixel_outset = 0.7;
  * own errors). */
 static const double inset_unknown = 0.1, voxel_unknown = 0.3;
 
+static double voxel_inset(const plm_scene *scene, const hull_measure *m)
+{
+    return scene->sampling.pitch * (pixel_inset - pixel_outset * scene->sampling.gathering) * m->area;
+}
+
+/* Halves and corners half each: where rims are straight the corners lack too much, where tips are few halves scatter (144 clean
+ * plants: 0.161 by halves, 0.146 by corners, 0.144 % by both). What the two are apart is in doubt by half. */
+static correction without_noise(const plm_scene *scene, const hull_measure *m)
+{
+    const double deficit = m->volume - m->half_volume, voxels = voxel_inset(scene, m);
+    if (!scene->plant_index) return (correction){2 * deficit + voxels, hypot(0.5 * deficit, m->half_volume_sd)};
+    return (correction){0.5 * m->lacking + deficit + voxels,
+                        hypot(hypot(m->half_volume_sd, m->lacking_error), 0.5 * m->lacking - deficit)};
+}
+
+/* Of what corners lack, in voxel means: 172 virtual scans and four of another family ask for it. */
+static const double fused_share = 0.85;
+
 static correction of_voxel_means(const plm_scene *scene, const hull_measure *m)
 {
     const plm_sampling *s = &scene->sampling;
-    const double inset = s->pitch * (pixel_inset - pixel_outset * s->gathering),
-                 unknown = s->pitch > 0 ? inset_unknown * s->pitch : voxel_unknown * s->spacing;
-    return (correction){fused_share * m->lacking + inset * m->area, hypot(m->lacking_error, unknown * m->area)};
+    const double unknown = s->pitch > 0 ? inset_unknown * s->pitch : voxel_unknown * s->spacing;
+    return (correction){fused_share * m->lacking + voxel_inset(scene, m), hypot(m->lacking_error, unknown * m->area)};
 }
 
 /* What is in doubt: the corners' own errors times what, and a share of the noise (184 virtual splats of 0.2 to 0.8 mm of noise and 12 to
@@ -235,6 +236,17 @@ static correction in_noise(const plm_scene *scene, const hull_measure *m)
  * noise thickens rather than widens, less (184 splats 0.46, 220 scans by depth cameras 0.5). */
 static const double area_share = 0.5;
 
+static double grown_area(const hull_measure *m, double gain)
+{
+    return m->volume > 0 ? area_share * gain / m->volume * m->area : 0;
+}
+
+/* A sheet's area does not grow as its volume does: its rim is known to the noise or a spacing. */
+static double sheet_area_error(const plm_sampling *sampling, double area)
+{
+    return 4 * sqrt(area / 2) * fmax(sampling->noise, sampling->spacing);
+}
+
 /* Values and standard errors from what was measured. */
 static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
 {
@@ -245,9 +257,15 @@ static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
     scene->hull_volume = m->volume + volume.gain;
     scene->hull_volume_error = volume.error;
     scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
-    const double area_deficit = m->area - m->half_area, per_volume = m->volume > 0 ? m->area / m->volume : 0;
-    scene->hull_area = m->area + (noisy ? area_share * volume.gain * per_volume : 2 * area_deficit);
-    scene->hull_area_error = noisy ? area_share * volume.error * per_volume : 0.8 * fabs(area_deficit);
+    const double area_deficit = m->area - m->half_area;
+    scene->hull_area = m->area + 2 * area_deficit + grown_area(m, voxel_inset(scene, m));
+    scene->hull_area_error = 0.8 * fabs(area_deficit);
+    if (noisy) {
+        const bool sheet = scene->hull_is_sheet;
+        scene->hull_area = m->area + (sheet ? 0 : grown_area(m, volume.gain));
+        scene->hull_area_error =
+            sheet ? sheet_area_error(&scene->sampling, m->area) : fabs(grown_area(m, volume.error));
+    }
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";
 }
 

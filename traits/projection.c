@@ -17,9 +17,6 @@ enum {
     FIT_POINTS = 160
 };
 
-/* Noise along the surface per noise across it, which projection does not take away: of voxel means (elsewhere a quarter to the whole of
- * it: traits/sample_end.c finds which). */
-static const double fused_along = 0.7;
 /* Neighbours that lie off the quadric by so much more than the noise, as much again by their shape, are no one surface: thin
  * tubes that meet, as the petioles at a rosette's foot. A point there is as high as it was seen, with all of its noise. */
 static const double no_surface = 1.4;
@@ -171,10 +168,10 @@ plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t 
 }
 
 double plm_projected_height(const plm_projection *onto, const float seen[3], const double direction[3],
-                            const plm_sampling *sampling, bool cut, plm_height *height)
+                            const plm_blur *blur, plm_height *height)
 {
-    const double noise = sampling->noise;
-    const bool fused = sampling->fused;
+    const double noise = blur->sampling->noise;
+    const bool fused = blur->sampling->fused, cut = blur->cut;
     const bool thin = onto->flatness < least_flatness && !(fused && cut); /* voxel means keep a stem's end a surface */
     const bool as_seen = thin || onto->rest > no_surface * noise;
     const float *place = as_seen ? seen : onto->place;
@@ -186,6 +183,6 @@ double plm_projected_height(const plm_projection *onto, const float seen[3], con
     const bool unknown = as_seen && cut && !fused;
     height->spread = unknown ? 0 : noise * sqrt(squared * leverage);
     height->along = unknown ? noise : noise * sqrt(fmax(1 - squared, 0));
-    if (fused) height->spread = hypot(height->spread, fused_along * height->along), height->along = 0;
+    if (fused) height->spread = hypot(height->spread, blur->along * height->along), height->along = 0;
     return squared;
 }

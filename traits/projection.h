@@ -26,10 +26,18 @@ plm_status plm_fit_points(const plm_index *index, const float (*xyz)[3], size_t 
  * then no point of the surface (a ghost, a floater). */
 bool plm_project_to_surface(const plm_subset *points, const float point[3], double noise, plm_projection *onto);
 
+/** What the noise in a height rests on. */
+typedef struct plm_blur {
+    const plm_sampling *sampling;
+    double
+        along; /**< of voxel means: noise along the surface per noise across it (of other points traits/sample_end.h finds it) */
+    bool cut; /**< see plm_extreme_options */
+} plm_blur;
+
 /** How high a projected point lies along a unit direction, and what noise is left in that. Where its neighbours are no one surface
- * (tubes as thin as the noise, tubes that meet) it is as high as it was seen, with all of the noise. cut: see plm_extreme_options.
+ * (tubes as thin as the noise, tubes that meet) it is as high as it was seen, with all of the noise.
  * Gives how far the surface faces the direction (squared cosine). */
 double plm_projected_height(const plm_projection *onto, const float seen[3], const double direction[3],
-                            const plm_sampling *sampling, bool cut, plm_height *height);
+                            const plm_blur *blur, plm_height *height);
 
 #endif
