@@ -1,9 +1,9 @@
 /* traits/plant_hull.c: volume and area of the plant's convex hull. Sampling makes a hull too small, noise makes it too large. In noise
  * what nothing supports (ghosts) is peeled off first, points near the hull are projected onto local quadrics, and where the surface
- * ends at the corners is told by the points about them (traits/hull_corners.c), with the noise that is left in each. Without noise
- * corners, and how much a random half of the points loses (a deficit that grows as n^-0.58, between wedge tips and smooth rims, wants
- * the Richardson factor 2.0), tell half each. Condition: 1 in volume; for a sheet the volume is noise over thickness, which the standard
- * error shows. */
+ * ends at the corners is told by the points about them (traits/hull_corners.c), with the noise that is left in each; the insets of voxel
+ * means and of fitted discs are shares of their size. Without noise corners, and how much a random half of the points loses (a deficit
+ * that grows as n^-0.58, between wedge tips and smooth rims, wants the Richardson factor 2.0), tell half each; without an index of the
+ * points halves alone. Condition: 1 in volume; for a sheet the volume is noise over thickness, which the standard error shows. */
 #include "cloud/random.h"
 #include "traits/extreme.h"
 #include "traits/families.h"
@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HALVES = 12, MOST_PEELS = 24 };
+enum { HALVES = 12, MOST_PEELS = 24, COPIES = 8 /* of a point that is written more than once */ };
 
 /** The hull after projection. */
 typedef struct hull_measure {
@@ -118,10 +118,10 @@ static bool *peeled_of(const plm_scene *scene, const bool *use, const plm_subset
 {
     bool *peeled = plm_alloc_zero(points->count, sizeof *peeled, error);
     for (size_t i = 0; peeled && i < scene->plant_count; i++) {
-        uint32_t row;
-        float squared;
-        if (!use[i] && plm_index_nearest(points->index, scene->plant[i], 1, &row, &squared) && squared == 0)
-            peeled[row] = true;
+        uint32_t row[COPIES];
+        float squared[COPIES];
+        const size_t found = use[i] ? 0 : plm_index_nearest(points->index, scene->plant[i], COPIES, row, squared);
+        for (size_t k = 0; k < found && squared[k] == 0; k++) peeled[row[k]] = true;
     }
     return peeled;
 }
@@ -241,31 +241,41 @@ static double grown_area(const hull_measure *m, double gain)
     return m->volume > 0 ? area_share * gain / m->volume * m->area : 0;
 }
 
-/* A sheet's area does not grow as its volume does: its rim is known to the noise or a spacing. */
+/* A sheet's area does not grow as its volume does: its rim is known to the noise or a spacing (here that of a square). */
 static double sheet_area_error(const plm_sampling *sampling, double area)
 {
-    return 4 * sqrt(area / 2) * fmax(sampling->noise, sampling->spacing);
+    return 8 * sqrt(area / 2) * fmax(sampling->noise, sampling->spacing);
+}
+
+static void correct_noisy_area(plm_scene *scene, const hull_measure *m, const correction *volume)
+{
+    scene->hull_area = m->area;
+    scene->hull_area_error = sheet_area_error(&scene->sampling, m->area);
+    if (scene->hull_is_sheet) return;
+    scene->hull_area += grown_area(m, volume->gain);
+    scene->hull_area_error = fabs(grown_area(m, volume->error));
+}
+
+static void correct_area_without_noise(plm_scene *scene, const hull_measure *m)
+{
+    const double deficit = m->area - m->half_area;
+    scene->hull_area = m->area + 2 * deficit + grown_area(m, voxel_inset(scene, m));
+    scene->hull_area_error = 0.8 * fabs(deficit);
 }
 
 /* Values and standard errors from what was measured. */
 static void correct(plm_scene *scene, const hull_measure *m, bool noisy)
 {
-    const double sigma = scene->sampling.noise;
     const correction volume = !noisy                  ? without_noise(scene, m)
                               : scene->sampling.fused ? of_voxel_means(scene, m)
                                                       : in_noise(scene, m);
     scene->hull_volume = m->volume + volume.gain;
     scene->hull_volume_error = volume.error;
-    scene->hull_is_sheet = 0.3 * sigma * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
-    const double area_deficit = m->area - m->half_area;
-    scene->hull_area = m->area + 2 * area_deficit + grown_area(m, voxel_inset(scene, m));
-    scene->hull_area_error = 0.8 * fabs(area_deficit);
-    if (noisy) {
-        const bool sheet = scene->hull_is_sheet;
-        scene->hull_area = m->area + (sheet ? 0 : grown_area(m, volume.gain));
-        scene->hull_area_error =
-            sheet ? sheet_area_error(&scene->sampling, m->area) : fabs(grown_area(m, volume.error));
-    }
+    scene->hull_is_sheet = 0.3 * scene->sampling.noise * m->area > 0.1 * m->volume || !(scene->hull_volume > 0);
+    if (noisy)
+        correct_noisy_area(scene, m, &volume);
+    else
+        correct_area_without_noise(scene, m);
     scene->hull_method = noisy ? "hull of the projected surface" : "hull, sampling gap added";
 }
 
