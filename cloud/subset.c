@@ -55,13 +55,12 @@ plm_status plm_subset_take(const plm_index *index, const float (*xyz)[3], size_t
     float(*few)[3] = plm_alloc(size, sizeof *few, error);
     plm_status status = few ? PLM_OK : PLM_E_MEMORY;
     for (size_t i = 0; few && i < size; i++) memcpy(few[i], xyz[row[i]], sizeof few[i]);
-    plm_free(row);
     plm_index *few_index = NULL;
     if (status == PLM_OK) status = plm_index_build((const float(*)[3])few, size, &few_index, error);
     if (status == PLM_OK)
-        *taken = (plm_subset){(const float(*)[3])few, few_index, size, few, few_index};
+        *taken = (plm_subset){(const float(*)[3])few, few_index, size, few, few_index, row};
     else
-        plm_free(few);
+        plm_free(few), plm_free(row);
     return status;
 }
 
@@ -69,5 +68,6 @@ void plm_subset_free(plm_subset *subset)
 {
     plm_index_free(subset->few_index);
     plm_free(subset->few);
+    plm_free(subset->few_row);
     *subset = (plm_subset){0};
 }

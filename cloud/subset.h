@@ -14,8 +14,9 @@ typedef struct plm_subset {
     const float (*xyz)[3];
     const plm_index *index;
     size_t count;
-    float (*few)[3]; /**< owned, as its index; NULL where all are taken */
+    float (*few)[3]; /**< owned, as its index and rows; NULL where all are taken */
     plm_index *few_index;
+    uint32_t *few_row; /**< which of all they are */
 } plm_subset;
 
 /** Takes a share of count points at random, independently of plm_sample_rows, with an index of their own; all of them where

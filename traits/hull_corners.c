@@ -182,25 +182,23 @@ plm_status plm_hull_corners(const plm_mesh *hull, const plm_index *index, const 
 typedef struct surroundings {
     uint32_t (*near)[AROUND]; /* of each corner: rows, and how many */
     size_t *nears;
-    uint32_t *row; /* sorted, and the projection of each; on_surface: whether there is one */
+    uint32_t *place; /* of each row, among those that are about some corner; NONE */
+    uint32_t *row;   /* of these, and how they were projected; on_surface: whether they were */
     plm_projection *onto;
     bool *on_surface;
     size_t rows;
 } surroundings;
 
+static const uint32_t NONE = UINT32_MAX;
+
 static void free_surroundings(surroundings *s)
 {
     plm_free(s->near);
     plm_free(s->nears);
+    plm_free(s->place);
     plm_free(s->row);
     plm_free(s->onto);
     plm_free(s->on_surface);
-}
-
-static int by_row(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
 }
 
 static plm_status find_near(const corners *c, const plm_subset *points, surroundings *s, plm_error *error)
@@ -208,32 +206,36 @@ static plm_status find_near(const corners *c, const plm_subset *points, surround
     const size_t all = 3 * c->faces;
     s->near = plm_alloc(all, sizeof *s->near, error);
     s->nears = plm_alloc(all, sizeof *s->nears, error);
+    s->place = plm_alloc(points->count, sizeof *s->place, error);
     s->row = plm_alloc(all * AROUND, sizeof *s->row, error);
-    if (!s->near || !s->nears || !s->row) return PLM_E_MEMORY;
-    size_t rows = 0;
+    if (!s->near || !s->nears || !s->place || !s->row) return PLM_E_MEMORY;
+    for (size_t i = 0; i < points->count; i++) s->place[i] = NONE;
     for (size_t i = 0; i < all; i++) {
         float query[3];
         query_of(place_of(c, i / 3, (int)(i % 3)), query);
         s->nears[i] = plm_index_nearest(points->index, query, AROUND, s->near[i], NULL);
-        memcpy(s->row + rows, s->near[i], s->nears[i] * sizeof *s->row);
-        rows += s->nears[i];
+        for (size_t k = 0; k < s->nears[i]; k++) {
+            const uint32_t row = s->near[i][k];
+            if (s->place[row] != NONE) continue;
+            s->place[row] = (uint32_t)s->rows;
+            s->row[s->rows++] = row;
+        }
     }
-    qsort(s->row, rows, sizeof *s->row, by_row);
-    for (size_t i = 0; i < rows; i++)
-        if (!i || s->row[i] != s->row[i - 1]) s->row[s->rows++] = s->row[i];
     return PLM_OK;
 }
 
-static plm_status project_near(const plm_subset *points, const bool *left_out, double noise, surroundings *s,
-                               plm_error *error)
+static plm_status project_surroundings(const plm_subset *points, const bool *use, double noise, surroundings *s,
+                                       plm_error *error)
 {
     s->onto = plm_alloc(s->rows, sizeof *s->onto, error);
     s->on_surface = plm_alloc(s->rows, sizeof *s->on_surface, error);
     if (!s->onto || !s->on_surface) return PLM_E_MEMORY;
 #pragma omp parallel for schedule(dynamic, 64)
-    for (size_t i = 0; i < s->rows; i++)
-        s->on_surface[i] =
-            !left_out[s->row[i]] && plm_project_to_surface(points, points->xyz[s->row[i]], noise, &s->onto[i]);
+    for (size_t i = 0; i < s->rows; i++) {
+        const uint32_t row = s->row[i];
+        s->on_surface[i] = use[points->few_row ? points->few_row[row] : row] &&
+                           plm_project_to_surface(points, points->xyz[row], noise, &s->onto[i]);
+    }
     return PLM_OK;
 }
 
@@ -253,12 +255,11 @@ static corner_gain noisy_behind(const corners *c, size_t corner, const surroundi
     plm_height height[AROUND];
     size_t places = 0;
     for (size_t i = 0; i < s->nears[corner]; i++) {
-        const uint32_t *found = bsearch(&s->near[corner][i], s->row, s->rows, sizeof *s->row, by_row);
-        const size_t place = (size_t)(found - s->row);
-        const bool again =
-            i && memcmp(points->xyz[*found], points->xyz[s->near[corner][i - 1]], sizeof *points->xyz) == 0;
+        const uint32_t row = s->near[corner][i], place = s->place[row];
+        const float(*xyz)[3] = points->xyz;
+        const bool again = i && memcmp(xyz[row], xyz[s->near[corner][i - 1]], sizeof xyz[row]) == 0;
         if (again || !s->on_surface[place]) continue;
-        plm_projected_height(&s->onto[place], points->xyz[*found], normal, blur, &height[places]);
+        plm_projected_height(&s->onto[place], xyz[row], normal, blur, &height[places]);
         height[places++].at -= at;
     }
     corner_gain gain = {0, blur->sampling->noise};
@@ -269,14 +270,14 @@ static corner_gain noisy_behind(const corners *c, size_t corner, const surroundi
     return gain;
 }
 
-plm_status plm_hull_noisy_corners(const plm_mesh *hull, const plm_subset *points, const bool *left_out,
+plm_status plm_hull_noisy_corners(const plm_mesh *hull, const plm_subset *points, const bool *use,
                                   const plm_sampling *sampling, double *lacking, double *std_error, plm_error *error)
 {
     corners c;
     surroundings s = {0};
     plm_status status = take_corners(hull, NOISY_FACES, &c, error);
     if (status == PLM_OK) status = find_near(&c, points, &s, error);
-    if (status == PLM_OK) status = project_near(points, left_out, sampling->noise, &s, error);
+    if (status == PLM_OK) status = project_surroundings(points, use, sampling->noise, &s, error);
     if (status == PLM_OK) {
         const plm_blur blur = {sampling, fused_along, false};
 #pragma omp parallel for schedule(dynamic, 4)

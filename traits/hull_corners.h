@@ -20,10 +20,10 @@ plm_status plm_hull_corners(const plm_mesh *hull, const plm_index *index, const 
  * hull      closed, of points that were projected to their surface
  * points    that surfaces are fitted to (plm_fit_points): those about the corners are projected, and tell where it ends with the noise
  *           that is left in them (plm_end_of_sample)
- * left_out  one a row of points: true for what is no point of the surface
+ * use       one a row of what points were taken of: false for what is no point of the surface
  * sampling  its noise, and whether it is of voxel means
  * PLM_E_MEMORY. */
-plm_status plm_hull_noisy_corners(const plm_mesh *hull, const plm_subset *points, const bool *left_out,
+plm_status plm_hull_noisy_corners(const plm_mesh *hull, const plm_subset *points, const bool *use,
                                   const plm_sampling *sampling, double *lacking, double *std_error, plm_error *error);
 
 #endif

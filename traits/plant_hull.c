@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HALVES = 12, MOST_PEELS = 24, COPIES = 8 /* of a point that is written more than once */ };
+enum { HALVES = 12, MOST_PEELS = 24 };
 
 /** The hull after projection. */
 typedef struct hull_measure {
@@ -113,19 +113,6 @@ static plm_status peel(plm_scene *scene, bool *use, bool *near, plm_error *error
     return status;
 }
 
-/* Which of the points that surfaces are fitted to were peeled off. */
-static bool *peeled_of(const plm_scene *scene, const bool *use, const plm_subset *points, plm_error *error)
-{
-    bool *peeled = plm_alloc_zero(points->count, sizeof *peeled, error);
-    for (size_t i = 0; peeled && i < scene->plant_count; i++) {
-        uint32_t row[COPIES];
-        float squared[COPIES];
-        const size_t found = use[i] ? 0 : plm_index_nearest(points->index, scene->plant[i], COPIES, row, squared);
-        for (size_t k = 0; k < found && squared[k] == 0; k++) peeled[row[k]] = true;
-    }
-    return peeled;
-}
-
 /* What lacks at the corners: in noise of the projected hull, else of the plant's own. points: NULL without noise. */
 static plm_status measure_corners(const plm_scene *scene, const bool *use, const plm_subset *points,
                                   const plm_mesh *projected, hull_measure *m, plm_error *error)
@@ -134,12 +121,7 @@ static plm_status measure_corners(const plm_scene *scene, const bool *use, const
     if (!points)
         return plm_hull_corners(&scene->hull, scene->plant_index, (const float(*)[3])scene->plant, &m->lacking,
                                 &m->lacking_error, error);
-    bool *peeled = peeled_of(scene, use, points, error);
-    const plm_status status = peeled ? plm_hull_noisy_corners(projected, points, peeled, &scene->sampling, &m->lacking,
-                                                              &m->lacking_error, error)
-                                     : PLM_E_MEMORY;
-    plm_free(peeled);
-    return status;
+    return plm_hull_noisy_corners(projected, points, use, &scene->sampling, &m->lacking, &m->lacking_error, error);
 }
 
 /* points: NULL without noise. */
@@ -155,7 +137,7 @@ static plm_status measure_skin(const plm_scene *scene, const plm_subset *points,
     if (!skin) return PLM_E_MEMORY;
     plm_mesh hull = {0};
     count = project_near(scene, points, near, skin);
-    status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, &hull, error);
+    status = plm_convex_hull((const float(*)[3])skin, count, &m->volume, &m->area, points ? &hull : NULL, error);
     if (status == PLM_OK && !points)
         status = measure_halves((const float(*)[3])skin, count, scene->options->seed, m, error);
     if (status == PLM_OK) status = measure_corners(scene, use, points, &hull, m, error);

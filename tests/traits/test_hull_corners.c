@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { TRIALS = 24, POINTS = 4000 };
 
@@ -154,7 +155,7 @@ static void noisy_leaves(uint64_t *seed, double noise, int i, float point[3])
 typedef void (*noisy_surface)(uint64_t *seed, double noise, int i, float point[3]);
 
 /* The hull of the projected points, and what it lacks. */
-static void measure(const plm_subset *points, const float (*xyz)[3], size_t count, const bool *left_out,
+static void measure(const plm_subset *points, const float (*xyz)[3], size_t count, const bool *use,
                     const plm_sampling *sampling, double *found, double *lacking, double *std_error)
 {
     plm_error error = {0};
@@ -170,7 +171,7 @@ static void measure(const plm_subset *points, const float (*xyz)[3], size_t coun
         used++;
     }
     assert_ok(plm_convex_hull((const float(*)[3])place, used, found, &area, &hull, &error));
-    assert_ok(plm_hull_noisy_corners(&hull, points, left_out, sampling, lacking, std_error, &error));
+    assert_ok(plm_hull_noisy_corners(&hull, points, use, sampling, lacking, std_error, &error));
     plm_mesh_free(&hull);
     free(place);
 }
@@ -180,7 +181,9 @@ static void check_noisy(noisy_surface put, double noise, size_t dense, double vo
 {
     const size_t count = dense * POINTS;
     float(*xyz)[3] = malloc(count * sizeof *xyz);
-    assert_non_null(xyz);
+    bool *all = malloc(count * sizeof *all);
+    assert_true(xyz && all);
+    memset(all, true, count * sizeof *all);
     const plm_sampling sampling = {.spacing = spacing / sqrt((double)dense), .noise = noise};
     uint64_t seed = 3;
     tally t = {0};
@@ -192,14 +195,12 @@ static void check_noisy(noisy_surface put, double noise, size_t dense, double vo
         for (size_t i = 0; i < count; i++) put(&seed, noise, (int)i, xyz[i]);
         assert_ok(plm_index_build((const float(*)[3])xyz, count, &index, &error));
         assert_ok(plm_fit_points(index, (const float(*)[3])xyz, count, &sampling, &points, &error));
-        bool *none = calloc(points.count, sizeof *none);
-        assert_non_null(none);
-        measure(&points, (const float(*)[3])xyz, count, none, &sampling, &found, &lacking, &std_error);
-        free(none);
+        measure(&points, (const float(*)[3])xyz, count, all, &sampling, &found, &lacking, &std_error);
         count_in(&t, found, lacking, std_error, volume);
         plm_subset_free(&points);
         plm_index_free(index);
     }
+    free(all);
     free(xyz);
     check_tally(&t, 0.03, gain, most_sure);
 }
@@ -225,14 +226,15 @@ static void what_is_left_out_tells_no_end(void **unused)
     (void)unused;
     enum { GHOSTS = 60 };
     static float xyz[POINTS + GHOSTS][3];
-    static bool none[POINTS + GHOSTS], ghost[POINTS + GHOSTS];
+    static bool all[POINTS + GHOSTS], plant[POINTS + GHOSTS];
     const plm_sampling sampling = {.spacing = spacing, .noise = 5e-4};
     uint64_t seed = 4;
     double lacking[3];
+    memset(all, true, sizeof all);
+    memset(plant, true, POINTS * sizeof *plant);
     for (int i = 0; i < POINTS; i++) noisy_blade(&seed, sampling.noise, i, xyz[i]);
     for (int i = POINTS; i < POINTS + GHOSTS; i++) {
         blade(0, 0.1 + 0.03 * test_uniform(&seed), 0.01 * test_normal(&seed), NULL, xyz[i]);
-        ghost[i] = true;
     }
     for (int run = 0; run < 3; run++) {
         plm_error error = {0};
@@ -241,7 +243,7 @@ static void what_is_left_out_tells_no_end(void **unused)
         const size_t count = run ? POINTS + GHOSTS : POINTS;
         assert_ok(plm_index_build((const float(*)[3])xyz, count, &index, &error));
         const plm_subset points = {.index = index, .xyz = (const float(*)[3])xyz, .count = count};
-        measure(&points, (const float(*)[3])xyz, POINTS, run == 1 ? none : ghost, &sampling, &found, &lacking[run],
+        measure(&points, (const float(*)[3])xyz, POINTS, run == 1 ? all : plant, &sampling, &found, &lacking[run],
                 &std_error);
         lacking[run] /= found;
         plm_index_free(index);
