@@ -26,9 +26,6 @@ static const double reach_per_spacing = 1.545, fused_reach = 1.8, uneven_reach =
 static const double alone_reach = 6.0;
 /* SD of noise by which a point is thrown off its surface at most. */
 static const double thrown_down = 3;
-/* The centres of fitted discs stay inside a rim: by which part of their radius and give or take which; 0.1 and 0.7 in two
- * families of virtual splats. */
-static const double disc_reach = 0.4, disc_known = 0.4;
 /* Depth cameras look from the side, and noise lies along their rays: an upper end has less of it than the surface's noise says, and
  * comes out too low by so many SD (48 virtual plants 0.72, 32 others 0.38, four of another family 0.6, cameras 15 to 40 degrees above
  * the horizon; scatter 0.66 between plants). */
@@ -184,11 +181,11 @@ static void find_end(heights *found, const plm_sampling *sampling, const double 
     const double under = sampling->fused && direction[2] < 0 ? -direction[2] * found->facing * sampling->spacing : 0;
     const bool is_top = sampling->fused && direction[2] > 0;
     const double noise = (is_top ? top_unknown : noise_unknown) * sampling->noise;
-    const double rim = sampling->extent * sqrt(fmax(1 - found->facing, 0)), unsure = disc_known * rim;
-    extreme->value += disc_reach * rim;
+    const double rim = sampling->extent * sqrt(fmax(1 - found->facing, 0)), disc = PLM_DISC_REACH * rim;
+    extreme->value += disc;
     if (is_top) extreme->value += top_lost * sampling->noise * direction[2];
     extreme->std_error =
-        sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise + unsure * unsure);
+        sqrt(extreme->std_error * extreme->std_error + tip * tip + under * under + noise * noise + disc * disc);
 }
 
 static plm_status measure_band(const float (*band)[3], size_t count, const double direction[3],

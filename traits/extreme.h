@@ -42,6 +42,10 @@ plm_status plm_extreme_along(const float (*xyz)[3], size_t count, const double d
 bool plm_is_supported(const plm_index *index, const float (*xyz)[3], const float point[3],
                       const plm_sampling *sampling);
 
+/** The centres of fitted discs (splats) stay inside a rim by this part of their radius, give or take as much: 0.1 and 0.7 in two
+ * families of virtual splats. */
+#define PLM_DISC_REACH 0.4
+
 /** Below this ratio of noise to spacing a cloud counts as free of noise. */
 #define PLM_NOISE_FREE 0.1
 

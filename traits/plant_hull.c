@@ -205,12 +205,10 @@ static correction of_voxel_means(const plm_scene *scene, const hull_measure *m)
 /* What is in doubt: the corners' own errors times what, and a share of the noise (184 virtual splats of 0.2 to 0.8 mm of noise and 12 to
  * 120 thousand points). */
 static const double corner_errors = 1.2, noise_unknown = 0.15;
-/* The centres of fitted discs stay inside a rim by this part of their radius, give or take as much (as in traits/extreme.c). */
-static const double disc_reach = 0.4;
 
 static correction in_noise(const plm_scene *scene, const hull_measure *m)
 {
-    const double shell = scene->sampling.noise * m->area, disc = disc_reach * scene->sampling.extent * m->area;
+    const double shell = scene->sampling.noise * m->area, disc = PLM_DISC_REACH * scene->sampling.extent * m->area;
     return (correction){m->lacking + disc, hypot(hypot(corner_errors * m->lacking_error, noise_unknown * shell), disc)};
 }
 
