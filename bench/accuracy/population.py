@@ -105,13 +105,6 @@ def score_folder(folder, out, program):
     return found, missing
 
 
-def wilson(share, n):
-    z = 1.96
-    middle = (share + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return middle - half, middle + half
-
-
 FIGURES = ("mode", "kind", "trait", "source", "n", "missing", "bias", "rmse", "median", "unit", "mape", "cover",
            "cover_low", "cover_high", "relative_se")
 
@@ -136,7 +129,7 @@ def summarise(rows, missing):
                 row["mape"] = 100 * np.mean(np.abs(error[whole] / true[whole]))
             if known.any():
                 cover = np.mean(np.abs(error[known]) <= 1.96 * se[known])
-                low, high = wilson(cover, known.sum())
+                low, high = score.wilson(cover, known.sum())
                 row.update(cover=cover, cover_low=low, cover_high=high)
                 if (known & whole).any():
                     row["relative_se"] = 100 * np.median(se[known & whole] / np.abs(true[known & whole]))

@@ -11,6 +11,7 @@ of 95 % intervals that cover the truth. Leaves are matched by their points (IoU 
 import argparse
 import csv
 import json
+import math
 import os
 import sys
 from collections import defaultdict
@@ -103,6 +104,14 @@ def score_labels(case, run, folder):
              for k, name in ((1, "stem"), (2, "petiole"), (3, "leaf"), (4, "ground")) if (truth["label"] == k).any()}
     return {"miou": float(np.mean(classes)), "f1": f1, "parts": parts, "pairs": pairs,
             "pieces": (true_count, found_count)}
+
+
+def wilson(share, n):
+    """95 % interval of a share of n."""
+    z = 1.96
+    middle = (share + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * math.sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+    return middle - half, middle + half
 
 
 def read_traits(run):
