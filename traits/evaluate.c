@@ -64,7 +64,7 @@ static bool is_out_of_reach(const plm_scene *scene, const call *made, plm_estima
         plm_trait_failed(out, "time budget: no time was left for what it needs; give more");
     else if (scene->plant_count == 0)
         plm_not_applicable(out, "no point of the cloud belongs to the plant");
-    else if (scene->organ_reason[0] && (trait->needs & needs_organs))
+    else if (scene->organ_reason[0] && (trait->needs & needs_organs) && !(trait->needs & PLM_NEEDS_NO_ORGANS))
         plm_trait_failed(out, "%s", scene->organ_reason);
     else if (trait->level != PLM_PLANT && !made->organ)
         plm_not_applicable(out, "the plant has no %s", plm_level_name(trait->level));

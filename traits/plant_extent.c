@@ -3,19 +3,14 @@
  * are area-weighted; where two eigenvalues are nearly equal the axes, not the plant, are ill-determined, and the standard
  * error holds how the extent changes as the axis turns. */
 #include "cloud/linear.h"
-#include "cloud/voxel.h"
 #include "traits/extreme.h"
 #include "traits/families.h"
+#include "traits/principal_axes.h"
 #include "traits/scene.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Voxels along the plant's longest side for its second moments; fewer where more than a share of them has one point. */
-enum { FINEST_VOXELS = 200, COARSEST_VOXELS = 50 };
-static const double most_lonely = 0.3;
-/* Turn of the axis times relative gap of the eigenvalues, radians: 0.006 clean, 0.013 in noise, on virtual plants. */
-static const double axis_turn = 0.012;
 /* A pair of points that is wider apart than the surface there by this factor, and by so many SD of noise at each end, holds stray
  * points. */
 static const double stray_share = 1.02, stray_noise = 3;
@@ -140,69 +135,20 @@ plm_status plm_trait_plant_width(const plm_scene *scene, const plm_organ *organ,
 
 /* ---- Principal axes ----------------------------------------------------------------------------------------------- */
 
-/* Share of voxels with a single point: where it is large, dense parts of the plant have more voxels than sparse ones. */
-static double lonely_share(const plm_voxels *voxels)
-{
-    size_t lonely = 0;
-    for (size_t i = 0; i < voxels->count; i++) lonely += voxels->size[i] == 1;
-    return (double)lonely / (double)voxels->count;
-}
-
-/* Thins the plant to voxels as small as its sampling allows. */
-static plm_status even_voxels(const plm_scene *scene, double size, plm_voxels *voxels, plm_error *error)
-{
-    plm_status status = PLM_OK;
-    for (double pieces = FINEST_VOXELS; status == PLM_OK; pieces *= 0.7) {
-        plm_voxels_free(voxels);
-        status = plm_voxel_thin((const float(*)[3])scene->plant, scene->plant_count, size / pieces, voxels, error);
-        if (status == PLM_OK && (pieces < COARSEST_VOXELS || lonely_share(voxels) < most_lonely)) break;
-    }
-    return status;
-}
-
-/* Second moments of the plant, a voxel counting as one piece of area. flat: of the ground projection. */
-static plm_status principal_axes(const plm_scene *scene, bool flat, double value[3], double axis[3][3],
-                                 plm_error *error)
-{
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < scene->plant_count; i++)
-        for (int k = 0; k < 3; k++) {
-            low[k] = fminf(low[k], scene->plant[i][k]);
-            high[k] = fmaxf(high[k], scene->plant[i][k]);
-        }
-    const double size = fmax(fmax((double)high[0] - low[0], (double)high[1] - low[1]), (double)high[2] - low[2]);
-    if (!(size > 0)) return plm_fail(error, PLM_E_DEGENERATE, "all points of the plant are in one place");
-    plm_voxels voxels = {0};
-    plm_status status = even_voxels(scene, size, &voxels, error);
-    if (status != PLM_OK) return status;
-    double mean[3] = {0}, m[6] = {0};
-    for (size_t i = 0; i < voxels.count; i++)
-        for (int k = 0; k < 3; k++) mean[k] += voxels.xyz[i][k];
-    for (int k = 0; k < 3; k++) mean[k] /= (double)voxels.count;
-    for (size_t i = 0; i < voxels.count; i++) {
-        const double x = voxels.xyz[i][0] - mean[0], y = voxels.xyz[i][1] - mean[1];
-        const double z = flat ? 0 : voxels.xyz[i][2] - mean[2];
-        m[0] += x * x, m[1] += x * y, m[2] += x * z, m[3] += y * y, m[4] += y * z, m[5] += z * z;
-    }
-    for (int k = 0; k < 6; k++) m[k] /= (double)voxels.count;
-    plm_eigen3(m, value, axis);
-    plm_voxels_free(&voxels);
-    return PLM_OK;
-}
-
 /* Extent along axis `which`; its standard error holds the turn of the axis against its neighbour in size. */
 static plm_status principal_extent(const plm_scene *scene, bool flat, int which, plm_estimate *out, plm_error *error)
 {
-    double value[3], axis[3][3];
-    plm_status status = principal_axes(scene, flat, value, axis, error);
+    plm_principal axes;
+    plm_status status = plm_principal_axes(scene, flat, &axes, error);
     if (status != PLM_OK) return status;
+    const double *value = axes.value;
+    double(*axis)[3] = axes.axis;
     plm_extreme end[2];
     status = extent_between(scene, axis[which], NULL, end, &out->value, &out->std_error, error);
     if (status != PLM_OK) return status;
     const int other = flat ? 1 - which : which == 1 ? (value[0] - value[1] < value[1] - value[2] ? 0 : 2) : 1;
     const double gap = fabs(value[which] - value[other]) / fmax(value[which], value[other]);
-    /* Voxels stand for area to a few per cent each: the axis turns by so much over the relative gap. */
-    const double turn = fmin(axis_turn / fmax(gap, 1e-3), 0.8);
+    const double turn = fmin(axes.turn / fmax(gap, 1e-3), 0.8);
     double squares = 0;
     for (int side = -1; side <= 1 && status == PLM_OK; side += 2) {
         double turned[3], extent = 0, ignored;

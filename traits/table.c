@@ -5,6 +5,9 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
+/* The plant's surface as a whole: that of its organs, and of points that have none. */
+#define OUTER_SURFACE (PLM_NEEDS_SAMPLING | PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS | PLM_NEEDS_NO_ORGANS)
+
 static const plm_trait traits[] = {
     {.name = "leaf_count",
      .level = PLM_PLANT,
@@ -98,7 +101,7 @@ static const plm_trait traits[] = {
     {.name = "pca1",
      .level = PLM_PLANT,
      .unit = PLM_MILLIMETRE,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_CLEAN,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_pca1,
      .definition = "extent of the ground projection along its largest principal axis",
      .source = "laser-scanning paper, PCA1",
@@ -106,7 +109,7 @@ static const plm_trait traits[] = {
     {.name = "pca2",
      .level = PLM_PLANT,
      .unit = PLM_MILLIMETRE,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_CLEAN,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_pca2,
      .definition = "extent of the ground projection along its smallest principal axis",
      .source = "laser-scanning paper, PCA2",
@@ -114,7 +117,7 @@ static const plm_trait traits[] = {
     {.name = "pca3d_1",
      .level = PLM_PLANT,
      .unit = PLM_MILLIMETRE,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_CLEAN,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_pca3d_1,
      .definition = "extent of the plant along its largest principal axis in space",
      .source = "design",
@@ -122,7 +125,7 @@ static const plm_trait traits[] = {
     {.name = "pca3d_2",
      .level = PLM_PLANT,
      .unit = PLM_MILLIMETRE,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_CLEAN,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_pca3d_2,
      .definition = "extent of the plant along its middle principal axis in space",
      .source = "design",
@@ -130,7 +133,7 @@ static const plm_trait traits[] = {
     {.name = "pca3d_3",
      .level = PLM_PLANT,
      .unit = PLM_MILLIMETRE,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_CLEAN,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_pca3d_3,
      .definition = "extent of the plant along its smallest principal axis in space",
      .source = "design",
@@ -154,7 +157,7 @@ static const plm_trait traits[] = {
     {.name = "projected_area",
      .level = PLM_PLANT,
      .unit = PLM_SQUARE_CM,
-     .needs = PLM_NEEDS_ZENITH | PLM_NEEDS_SAMPLING | PLM_NEEDS_SURFACE | PLM_NEEDS_AXIS,
+     .needs = PLM_NEEDS_ZENITH | OUTER_SURFACE,
      .measure = plm_trait_projected_area,
      .definition = "area of the silhouette of the plant seen from above",
      .source = "design",

@@ -46,9 +46,10 @@ enum {
     PLM_NEEDS_HULL = 1 << 6,
     PLM_NEEDS_NEIGHBOURS = 1 << 7, /**< the fused neighbour pass */
     PLM_NEEDS_COLOUR = 1 << 8,
-    PLM_NEEDS_SAMPLING = 1 << 9, /**< spacing and noise of the plant */
-    PLM_NEEDS_LIGHT = 1 << 10,   /**< absorbed light of the surfaces */
-    PLM_NEEDS_BASE = 1 << 11     /**< axes, where the plant is so low that its leaves may hide its lowest surface */
+    PLM_NEEDS_SAMPLING = 1 << 9,  /**< spacing and noise of the plant */
+    PLM_NEEDS_LIGHT = 1 << 10,    /**< absorbed light of the surfaces */
+    PLM_NEEDS_BASE = 1 << 11,     /**< axes, where the plant is so low that its leaves may hide its lowest surface */
+    PLM_NEEDS_NO_ORGANS = 1 << 12 /**< of what is needed, organs may be missing: points alone tell it then */
 };
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;
