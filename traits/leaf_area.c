@@ -7,15 +7,18 @@
 
 static const char *const method = "smoothed triangulation, local alpha";
 
-/* A found junction that is off takes a piece of the petiole to the leaf or the other way: some three thicknesses wide, as it
- * widens into the blade. */
-static const double junction_width = 3.0;
+/* A found junction that is off takes a piece of the petiole to the leaf or the other way: hardly as wide as that is thick where a
+ * large blade begins, up to three times where a young one does, which is a few times as wide as its petiole; of a leaf on the stem
+ * itself a tenth of the stem. Shares as in mesh/leaf_surface.c. */
+static const double junction_width = 0.6, young_width = 12, youngest = 0.2, junction_on_stem = 0.1;
 
-static double error_of_area(const plm_organ *leaf)
+double plm_leaf_area_error(const plm_organ *leaf)
 {
     const plm_midrib *midrib = leaf->midrib;
-    return hypot(leaf->surface.area_std_error,
-                 midrib ? junction_width * midrib->thickness * midrib->junction_error : 0);
+    if (!midrib) return leaf->surface.area_std_error;
+    const double young = midrib->width > 0 ? fmin(midrib->thickness / midrib->width, youngest) : youngest;
+    const double width = midrib->on_stem ? junction_on_stem : junction_width + young_width * young;
+    return hypot(leaf->surface.area_std_error, width * midrib->thickness * midrib->junction_error);
 }
 
 plm_status plm_trait_leaf_area(const plm_scene *scene, const plm_organ *leaf, plm_estimate *out, plm_error *error)
@@ -23,7 +26,7 @@ plm_status plm_trait_leaf_area(const plm_scene *scene, const plm_organ *leaf, pl
     (void)scene, (void)error;
     if (!plm_leaf_has_surface(leaf, out)) return PLM_OK;
     out->value = leaf->surface.area;
-    out->std_error = error_of_area(leaf);
+    out->std_error = plm_leaf_area_error(leaf);
     out->method = method;
     return PLM_OK;
 }
@@ -44,7 +47,7 @@ plm_status plm_trait_total_leaf_area(const plm_scene *scene, const plm_organ *or
             continue;
         }
         sum += leaf->surface.area;
-        const double error_of_leaf = error_of_area(leaf);
+        const double error_of_leaf = plm_leaf_area_error(leaf);
         errors += error_of_leaf;
         squares += error_of_leaf * error_of_leaf;
         points += leaf->count;

@@ -516,6 +516,7 @@ plm_status plm_midrib_find(const plm_scene *scene, const plm_organ *leaf, plm_mi
         compound ? compound_midrib(scene, leaf, petiole, made, error) : simple_midrib(scene, leaf, holder, made, error);
     made->end_error = error_of_ends(&leaf->surface);
     made->thickness = thickness_of(holder);
+    made->on_stem = holder->label == PLM_LABEL_STEM;
     made->junction_error =
         scene->labels_given ? 0 : fmin(junction_share * made->thickness, junction_most * sqrt(leaf->surface.area));
     made->length_error = hypot(hypot(1.5 * made->end_error, 0.014 * made->length), made->junction_error);

@@ -14,8 +14,8 @@ typedef struct plm_midrib {
     double width, width_error; /**< largest section along the surface; compound: extent across the leaf in its plane */
     double thickness;          /**< of the organ that the leaf hangs on, from its points */
     double junction_error;     /**< standard error of where that organ ends, where its label was found; else 0 */
-    bool compound;
-    const char *method; /**< static text */
+    bool compound, on_stem;    /**< on_stem: that organ is a stem */
+    const char *method;        /**< static text */
 } plm_midrib;
 
 /** Finds the midrib of a leaf that has a surface, from the organ it hangs on (its petiole, or else the nearest stem).

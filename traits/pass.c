@@ -318,7 +318,7 @@ static plm_status run_stages(plant_job *job, plm_error *error)
 static const double enough_points = 20000;
 /** What the standard errors of organs grow by as labels are found among fewer: without it their 95 % intervals held the truth
  * of 60 to 80 % of virtual plants thinned to 5000 points (docs/time.md). */
-static const double label_growth = 1.0;
+static const double label_growth = 2.0;
 
 /* Estimators know spacing and noise of the points that they see, but not that an organ's outline was found among few. Labels that
  * came with the cloud stay what they are, and so does a cloud that was not thinned: its labels are all there is to have. */

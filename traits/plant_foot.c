@@ -12,7 +12,7 @@ enum { FEWEST_POINTS = 8, FEWEST_LINES = 3, ROUNDS = 20 };
 
 /* The stem's lower end: this share of its height, and at least so much. */
 static const double lowest_share = 0.02, fewest_metres = 0.002;
-static const double seen_unevenly = 0.3; /* of the scatter of its points: some sides are seen more than others */
+static const double seen_unevenly = 0.12; /* of the scatter of its points: some sides are seen more than others */
 /* A petiole is so many times as long as it is wide, seen from above, or its direction is unknown. */
 static const double elongation = 1.5;
 static const double normal_median = 0.6745; /* of |x| of a normal x with SD 1 */

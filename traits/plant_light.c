@@ -69,7 +69,7 @@ plm_status plm_trait_leaf_absorbed_radiation(const plm_scene *scene, const plm_o
     if (scene->light_reason[0]) return plm_not_applicable(out, "%s", scene->light_reason);
     out->value = leaf->absorbed;
     out->std_error =
-        with_area_error(leaf->absorbed, leaf->absorbed_error, leaf->surface.area, leaf->surface.area_std_error);
+        with_area_error(leaf->absorbed, leaf->absorbed_error, leaf->surface.area, plm_leaf_area_error(leaf));
     out->method = method;
     return PLM_OK;
 }

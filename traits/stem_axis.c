@@ -23,7 +23,7 @@ static const double end_shape = 0.1; /* radii by which an end's shape leaves the
 /* Where the labels are our own, the stem's end is told from the topmost petiole's foot by the change of radius only, which
  * the radius and the noise blur (errors of 0.6 mm clean, 2.8 and 5 mm in noise of 0.5 mm, median over simulated plants);
  * a chord to a wrong end leans by the angle between the stem's end and the chord. */
-static const double own_end_radii = 0.5, own_end_noise = 8, end_lean = 0.3;
+static const double own_end_radii = 0.5, own_end_noise = 8, end_lean = 0.15;
 /* Share of the noise that lies along the tube: depth noise is seen from the side, splats' noise is normal to it. */
 static const double noise_along = 0.7;
 
@@ -230,7 +230,7 @@ static plm_status fit(const plm_scene *scene, const plm_tube_points *points, plm
     status = find_ends(points, reach, axis, error);
     if (status != PLM_OK) return status;
     stand_on_soil(scene, axis);
-    axis->direction_error = hypot(plm_centre_line_direction_error(&line, -1, 1), 0.1 * axis->radius / axis->length);
+    axis->direction_error = hypot(plm_centre_line_direction_error(&line, -1, 1), 0.04 * axis->radius / axis->length);
     if (scene->habit != PLM_HABIT_UNKNOWN) { /* labels are the segmentation's */
         const double tip_error = hypot(own_end_radii * axis->radius, own_end_noise * axis->noise);
         axis->length_error = hypot(axis->length_error, tip_error);

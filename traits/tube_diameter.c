@@ -24,8 +24,8 @@ static const double least_radius = 0.3;      /* of the fitted one */
 static const double inflation_fused = 0.55, inflation_fused_error = 0.30, inflation_fused_most = 1.6;
 /* Depth cameras: each view's own errors (of its place, and of the mixed pixels along both edges) shift its arc of the ring
  * as a whole. At small noise that adds more than the noise of single points does: so many spreads to the diameter, and so many
- * as an SD between scans (114 virtual stems of 2-4 mm from 12 views: of one scene all are off alike). */
-static const double view_inflation = 0.38, view_error = 0.27;
+ * as an SD between scans (virtual stems of 2-4 mm from 12 views, 114 and 136: of one scene all are off alike). */
+static const double view_inflation = 0.38, view_error = 0.34;
 /* The more pixels a voxel has, the farther out one of them makes a voxel: per gathering (plm_sampling) and spread squared over the
  * diameter. */
 static const double pixel_inflation = 2.3;
