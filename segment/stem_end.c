@@ -149,7 +149,8 @@ static plm_status leave_petiole(plm_sketch *sketch, const stem_top *top, bool *d
                  last = last_foot(&top->groups, top->end, STUB * R, least);
     *done = false;
     if (top->typical < PETIOLES_FOR_KINK * R || !(last > 0)) return PLM_OK;
-    const size_t sharp = sharp_turn(&sketch->stem, last, R), kink = plm_stem_kink(&sketch->stem, last);
+    const size_t sharp = sharp_turn(&sketch->stem, last, R), bend = plm_stem_kink(&sketch->stem, last);
+    const size_t kink = bend && plm_stem_zigzag(&sketch->stem, bend) ? 0 : bend;
     plm_status status = PLM_OK;
     if (sharp && (!kink || (sharp < kink && !is_stem_beyond(top, sketch->stem.along[sharp] + SHARP_REACH * R, least))))
         status = plm_stem_straighten(sketch, sharp, INTERNODE_LEAST * R, done, error);

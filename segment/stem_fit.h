@@ -39,6 +39,16 @@ double plm_stem_mean_radius(const plm_stem_path *stem, size_t first, size_t end)
 
 void plm_stem_path_free(plm_stem_path *path);
 
+/** Nodes beside a place that do not count for where the way goes: feet of leaves widen it, and bend it to and fro. */
+enum { PLM_STEM_NEAR = 4 };
+
+/** Direction (pointing up) and mean radius of the path beyond (step 1) or before (-1) a node, by the nodes from PLM_STEM_NEAR on; there
+ * must be some. */
+double plm_stem_look(const plm_stem_path *stem, size_t n, int step, double out[3]);
+
+/** Whether the path's turn at a node is undone beside it, as about a leaf's foot. */
+bool plm_stem_zigzag(const plm_stem_path *stem, size_t n);
+
 /** Angle (radians) between the directions of the path below and above node n. */
 double plm_stem_turn(const plm_stem_path *stem, size_t n);
 

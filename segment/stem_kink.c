@@ -16,8 +16,10 @@ static const double PRESENT = 0.3;           /* of the points that the stem has 
 static const double PULL = 0.3, TURN = 0.15; /* how far a step follows the points, and the direction the steps */
 static const double THINNER = 0.75;          /* radius beyond a kink over that below: the way has left the stem, ... */
 static const double THICKER = 1.15;          /* ... where the tube straight on is so much thicker than the way's */
+static const double UNDONE = 0.5; /* of a turn that is left where nodes beside it do not count: else the way zigzags */
 enum {
     ARM = 6,
+    FAR = 12, /* nodes: what lies farther off does not count */
     RISING = 4,
     BELOW = 8,
     SKIPPED = 2,
@@ -42,6 +44,25 @@ double plm_stem_turn(const plm_stem_path *stem, size_t n)
     direction(stem, n, -1, below);
     direction(stem, n, 1, above);
     return acos(fmax(-1, fmin(1, plm_dot(below, above))));
+}
+
+double plm_stem_look(const plm_stem_path *stem, size_t n, int step, double out[3])
+{
+    const size_t last = stem->count - 1;
+    const size_t low = step > 0 ? n + PLM_STEM_NEAR : n > FAR ? n - FAR : 0;
+    const size_t high = step > 0 ? (n + FAR < last ? n + FAR : last) : n - PLM_STEM_NEAR;
+    for (int axis = 0; axis < 3; axis++) out[axis] = stem->node[high][axis] - stem->node[low][axis];
+    plm_normalise(out);
+    return plm_stem_mean_radius(stem, low, high + 1);
+}
+
+bool plm_stem_zigzag(const plm_stem_path *stem, size_t n)
+{
+    double below[3], above[3];
+    if (n < PLM_STEM_NEAR + ARM || n + PLM_STEM_NEAR + ARM >= stem->count) return false;
+    plm_stem_look(stem, n, -1, below);
+    plm_stem_look(stem, n, 1, above);
+    return acos(fmax(-1, fmin(1, plm_dot(below, above)))) < UNDONE * plm_stem_turn(stem, n);
 }
 
 double plm_stem_hairpin(const plm_stem_path *stem)

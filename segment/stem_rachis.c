@@ -19,8 +19,6 @@ static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
 enum {
     COMPOUND_LEAST = 2,
     LEAFLETS_LEAST = 2,
-    NEAR = 4, /* nodes: feet of leaves widen the way and bend it to and fro, so what lies nearer does not count, ... */
-    FAR = 12, /* ... nor what lies farther off */
     MARGIN = 3, /* nodes of an arm at least */
 };
 
@@ -46,26 +44,15 @@ static double usual_rachis(const plm_side_groups *groups, double end, double pet
     return plm_quantile(value, count, 0.5);
 }
 
-/* Direction (pointing up) and mean radius of the path between NEAR and FAR nodes beyond (step 1) or before (-1) a node. */
-static double look_along(const plm_stem_path *stem, size_t n, int step, double out[3])
-{
-    const size_t last = stem->count - 1;
-    const size_t low = step > 0 ? n + NEAR : n > FAR ? n - FAR : 0;
-    const size_t high = step > 0 ? (n + FAR < last ? n + FAR : last) : n - NEAR;
-    for (int axis = 0; axis < 3; axis++) out[axis] = stem->node[high][axis] - stem->node[low][axis];
-    plm_normalise(out);
-    return plm_stem_mean_radius(stem, low, high + 1);
-}
-
 /* The node between two arc lengths where the way most likely leaves the stem, 0: none. Leaflets may hide that a rachis is thin. */
 static size_t best_exit(const plm_stem_path *stem, double from, double to)
 {
     size_t best = 0;
     double most = EVIDENCE_LEAST;
-    for (size_t n = NEAR + MARGIN; n + NEAR + MARGIN < stem->count; n++) {
+    for (size_t n = PLM_STEM_NEAR + MARGIN; n + PLM_STEM_NEAR + MARGIN < stem->count; n++) {
         if (stem->along[n] < from || stem->along[n] > to) continue;
         double below[3], above[3];
-        const double before = look_along(stem, n, -1, below), beyond = look_along(stem, n, 1, above);
+        const double before = plm_stem_look(stem, n, -1, below), beyond = plm_stem_look(stem, n, 1, above);
         const double turn = acos(fmax(-1, fmin(1, plm_dot(below, above))));
         const double evidence = turn / BEND + fmax(1 - beyond / before, 0) / DROP;
         if (evidence > most) {

@@ -66,6 +66,16 @@ static void the_stem_ends_below_the_leaflets_of_its_topmost_leaf(void **unused)
         0.9);
 }
 
+/* The foot of a leaf bends the way to and fro: the turn back passed for one into a petiole, and the stem went on into that leaf's. */
+static void a_turn_that_is_undone_leaves_no_stem(void **unused)
+{
+    (void)unused;
+    check_soybean(
+        &(plm_scan_options){
+            .scanner = PLM_SCANNER_SPLAT, .seed = 59002, .points = 60000, .noise = 5e-4, .views = 60, .outliers = 0.01},
+        0.9);
+}
+
 /* The way up led through a leaflet that touches, down to another leaf's petiole and up that one. */
 static void a_way_that_turns_down_has_left_the_stem(void **unused)
 {
@@ -229,6 +239,7 @@ int main(void)
         cmocka_unit_test(the_last_internode_is_no_petiole_of_a_young_leaf),
         cmocka_unit_test(a_way_into_a_rachis_goes_back_to_the_stem),
         cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
+        cmocka_unit_test(a_turn_that_is_undone_leaves_no_stem),
         cmocka_unit_test(a_way_that_turns_down_has_left_the_stem),
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
