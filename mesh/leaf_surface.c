@@ -202,7 +202,8 @@ static void measure_area(const surface_work *work, const plm_surface_options *op
     const double holes = hole_unsure * (sums->hole_area + sums->gap_area);
     const double seams = sums->area * fmin(seam_unsure * sqrt((double)work->chart_count), 0.03);
     const double alpha = alpha_unsure * out->alpha_sensitivity * sums->area;
-    const double apart = (work->fused ? second_unsure_fused : second_unsure) * (second - out->area);
+    const double apart =
+        work->density.half > 0 ? (work->fused ? second_unsure_fused : second_unsure) * (second - out->area) : 0;
     out->area_std_error =
         sqrt(square(rim_error) + square(narrow) + square(holes) + square(seams) + square(alpha) + square(apart));
     out->boundary_length = rim;

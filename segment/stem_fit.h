@@ -46,7 +46,7 @@ enum { PLM_STEM_NEAR = 4 };
  * must be some. */
 double plm_stem_look(const plm_stem_path *stem, size_t n, int step, double out[3]);
 
-/** Whether the path's turn at a node is undone beside it, as about a leaf's foot. */
+/** Whether the path's turn at a node is undone beside it, as about a leaf's foot; false within ten nodes of an end, which do not tell. */
 bool plm_stem_zigzag(const plm_stem_path *stem, size_t n);
 
 /** Angle (radians) between the directions of the path below and above node n. */

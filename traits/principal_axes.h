@@ -13,7 +13,7 @@ typedef struct plm_principal {
 
 /** Area-weighted moments of the measured surfaces and tubes, and of what no surface stands for (where there are no organs, all): voxels
  * that each count as one piece of area. flat: of the ground projection, weighted by the area of the surface itself.
- * PLM_E_DEGENERATE  all points are in one place. PLM_E_MEMORY. */
+ * PLM_E_DEGENERATE  all points are in one place, or no surface has an area. PLM_E_MEMORY, and PLM_E_LIBRARY as plm_scene_mesh. */
 plm_status plm_principal_axes(const plm_scene *scene, bool flat, plm_principal *axes, plm_error *error);
 
 #endif

@@ -35,7 +35,7 @@ PLM_API const char *plm_unit_name(plm_unit unit);
 /** What an SI value is multiplied by to be in the unit: 1000, 1e4, 1e6, 180 / pi, 1 or 1. */
 PLM_API double plm_unit_factor(plm_unit unit);
 
-/** Stages that a trait needs; the plan runs no other. */
+/** Stages that a trait needs, and how; the plan runs no other. */
 enum {
     PLM_NEEDS_ZENITH = 1 << 0,
     PLM_NEEDS_GROUND = 1 << 1,  /**< ground set apart */
@@ -46,10 +46,12 @@ enum {
     PLM_NEEDS_HULL = 1 << 6,
     PLM_NEEDS_NEIGHBOURS = 1 << 7, /**< the fused neighbour pass */
     PLM_NEEDS_COLOUR = 1 << 8,
-    PLM_NEEDS_SAMPLING = 1 << 9,  /**< spacing and noise of the plant */
-    PLM_NEEDS_LIGHT = 1 << 10,    /**< absorbed light of the surfaces */
-    PLM_NEEDS_BASE = 1 << 11,     /**< axes, where the plant is so low that its leaves may hide its lowest surface */
-    PLM_NEEDS_NO_ORGANS = 1 << 12 /**< of what is needed, organs may be missing: points alone tell it then */
+    PLM_NEEDS_SAMPLING = 1 << 9, /**< spacing and noise of the plant */
+    PLM_NEEDS_LIGHT = 1 << 10,   /**< absorbed light of the surfaces */
+    PLM_NEEDS_BASE = 1 << 11,    /**< axes, where the plant is so low that its leaves may hide its lowest surface */
+    PLM_NEEDS_NO_ORGANS =
+        1
+        << 12 /**< no stage: points alone tell the trait where the plant can't be cut into organs (not: for want of time) */
 };
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;

@@ -97,12 +97,12 @@ static void areas_and_tilts_are_those_of_the_shape(void **unused)
 }
 
 /* Where labels are right, standard errors are a little wide, as they hold what is wrong with labels: tilts' had been two to three times
- * too wide. This noise lies along the normal alone, and areas are corrected for noise along the leaf as well: they come out 1 % small. */
+ * too wide. Areas in noise are an exception: this noise lies along the normal alone, and areas are corrected for noise along the leaf as well: they come out 1 % small. */
 static void standard_errors_are_of_the_size_of_errors(void **unused)
 {
     (void)unused;
     enum { LEAVES = 20 };
-    const double noises[] = {0, 5e-4};
+    const double noises[] = {0, 5e-4}, most[] = {1, 1.6};
     for (size_t n = 0; n < COUNT(noises); n++) {
         double areas = 0, tilts = 0;
         for (uint64_t seed = 1; seed <= LEAVES; seed++) {
@@ -122,7 +122,7 @@ static void standard_errors_are_of_the_size_of_errors(void **unused)
         }
         print_message("%.1f mm of noise: errors over standard errors %.2f (area), %.2f (tilt)\n", 1e3 * noises[n],
                       sqrt(areas), sqrt(tilts));
-        assert_true(sqrt(areas) > 0.5 && sqrt(areas) < 1.6);
+        assert_true(sqrt(areas) > 0.5 && sqrt(areas) < most[n]);
         assert_true(sqrt(tilts) > 0.6 && sqrt(tilts) < 1.3);
     }
 }

@@ -177,6 +177,30 @@ static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
     assert_false(done);
 }
 
+/* A way that turns aside for 4 mm, and then back (out: false) or on. */
+static bool is_zigzag(bool back, size_t n)
+{
+    static const double up[3] = {0, 0, 1}, aside[3] = {0.38, 0, 0.92};
+    double node[NODES][3], radius[NODES], along[NODES], from[3] = {0};
+    plm_stem_path stem = {.node = node, .radius = radius, .along = along};
+    const double *leg[] = {up, aside, back ? up : aside};
+    const double length[] = {0.03, 0.004, 0.03};
+    for (int k = 0; k < 3; k++) {
+        add_nodes(&stem, from, leg[k], length[k], 2e-3);
+        for (int a = 0; a < 3; a++) from[a] += length[k] * leg[k][a];
+    }
+    return plm_stem_zigzag(&stem, n ? n : stem.count - 10);
+}
+
+static void a_turn_that_is_undone_is_told(void **unused)
+{
+    (void)unused;
+    assert_true(is_zigzag(true, 30));
+    assert_false(is_zigzag(false, 30));
+    assert_false(is_zigzag(true, 9)); /* too near to an end to tell */
+    assert_false(is_zigzag(true, 0));
+}
+
 enum { UP, BENT, DOWN, ASIDE };
 
 /* Arc length, in mm, at which a path of three legs of 40 mm turns down sharply; 0: it does not. */
@@ -244,6 +268,7 @@ int main(void)
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
+        cmocka_unit_test(a_turn_that_is_undone_is_told),
         cmocka_unit_test(who_says_simple_gets_a_low_stem),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
