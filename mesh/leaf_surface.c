@@ -200,7 +200,7 @@ static void measure_area(const surface_work *work, const plm_surface_options *op
     const double blurred = square(rim * sigma) / sums->area;
     const double narrow = fmin((work->fused ? narrow_unsure_fused : narrow_unsure) * blurred, sums->area);
     const double holes = hole_unsure * (sums->hole_area + sums->gap_area);
-    const double seams = sums->area * fmin(seam_unsure * sqrt((double)work->chart_count), 0.03);
+    const double seams = sums->area * seam_unsure * sqrt((double)work->chart_count);
     const double alpha = alpha_unsure * out->alpha_sensitivity * sums->area;
     const double apart =
         work->density.half > 0 ? (work->fused ? second_unsure_fused : second_unsure) * (second - out->area) : 0;

@@ -1,5 +1,5 @@
 /* traits/principal_axes.c: along which axes the surface of a plant is spread. Points are no measure of area: scans see parts of a plant
- * better than others, and splats are some ten times denser on one leaf than on another. */
+ * better than others, and splats are up to thirty times denser on one leaf than on another. */
 #include "traits/principal_axes.h"
 
 #include "cloud/linear.h"
