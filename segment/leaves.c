@@ -1,10 +1,10 @@
 /* segment/leaves.c: from side groups to leaves: what hangs on one foot is one leaf, its blades are leaflets. */
 #include "cloud/linear.h"
+#include "segment/broken_tubes.h"
 #include "segment/habit.h"
 #include "segment/junction.h"
 #include "segment/rosette_core.h"
 #include "segment/scratch.h"
-#include "segment/side_groups.h"
 #include "segment/strap_leaves.h"
 
 #include <math.h>
@@ -191,10 +191,21 @@ static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
     return status;
 }
 
+/* What hangs on the stem; petioles that a gap parts from their leaves are linked with them first. */
+static plm_status find_groups(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
+{
+    size_t links = 0;
+    plm_status status = plm_side_groups_find(sketch, 1, groups, error);
+    if (status == PLM_OK && sketch->stem.count) status = plm_bridge_tubes(sketch, groups, &links, error);
+    if (status != PLM_OK || !links) return status;
+    plm_side_groups_free(groups);
+    return plm_side_groups_find(sketch, 1, groups, error);
+}
+
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error)
 {
     plm_side_groups groups = {0};
-    plm_status status = plm_side_groups_find(sketch, 1, &groups, error);
+    plm_status status = find_groups(sketch, &groups, error);
     if (status == PLM_OK && sketch->scale.has_tubes && !sketch->stem.count) {
         status = plm_side_groups_split(sketch, &groups, error);
         if (status == PLM_OK) status = plm_side_groups_young(sketch, &groups, error);
