@@ -1,6 +1,6 @@
 /* traits/centre_line.c: a penalised spline (P. H. C. Eilers and B. D. Marx, Flexible smoothing with B-splines and
- * penalties, Statistical Science 11, 1996; the penalty here is the integral of the squared second derivative) through the
- * centroids of a tube's points.
+ * penalties, Statistical Science 11, 1996; the penalties here are integrals of the squared second and, where a line's shape asks for it,
+ * third derivative) through the centroids of a tube's points.
  *
  * Centroids beat fitted circles where noise is near the radius: a view that sees one side only shifts both ends alike and
  * leaves the direction alone, while a ring fit must find a centre that noise hides. */
@@ -18,6 +18,10 @@ static const double inlying = 2.5;        /* median distances within which a poi
 /* Square root of the integral of u''^2 over the chord's parameter, in lengths of the chord, that a tube is expected to
  * have: it gives the quadratic and cubic Legendre terms prior SDs of 0.05 and 0.02 lengths. */
 static const double expected_bend = 0.3;
+static const double CUBIC_THIRD = 15; /* third derivative of the cubic Legendre polynomial */
+/* Degrees of freedom of the prior of the cubic term, Student's t for u and v together: few lines are hooks, but those are far more
+ * skew than others. Found by expectation and maximisation along with the weights. */
+static const double SKEW_FREEDOM = 4;
 
 typedef struct work {
     const double (*xyz)[3];
@@ -110,9 +114,53 @@ static void add_penalty(const plm_curve *curve, double factor, double *matrix)
         }
 }
 
+/* The third derivative within a span, which is one number there: of the coefficients from the number that is returned on. */
+static int third_derivative(const plm_curve *curve, int span, double third[4])
+{
+    const double length = 2.0 / curve->spans, middle = -1 + length * (span + 0.5), inside = 0.25 * length;
+    double value[4], first[4], low[4], high[4];
+    const int begin = plm_curve_basis(curve, middle - inside, value, first, low);
+    plm_curve_basis(curve, middle + inside, value, first, high);
+    for (int a = 0; a < 4; a++) third[a] = (high[a] - low[a]) / (2 * inside);
+    return begin;
+}
+
+/* The same of the squared third derivative. */
+static void add_skew_penalty(const plm_curve *curve, double factor, double *matrix)
+{
+    const int n = plm_curve_basis_count(curve);
+    for (int span = 0; span < curve->spans; span++) {
+        double third[4];
+        const int begin = third_derivative(curve, span, third);
+        for (int a = 0; a < 4; a++)
+            for (int b = 0; b < 4; b++)
+                matrix[(begin + a) * n + begin + b] += factor * (2.0 / curve->spans) * third[a] * third[b];
+    }
+}
+
+/* Mean square of the cubic term of u and v, in squared lengths of the chord: of a line that is no cubic the one of as large a third
+ * derivative. */
+static double squared_skew(const plm_curve *curve)
+{
+    double mean = 0;
+    for (int span = 0; span < curve->spans; span++) {
+        double third[4];
+        const int begin = third_derivative(curve, span, third);
+        for (int c = 0; c < 2; c++) {
+            double here = 0;
+            for (int a = 0; a < 4; a++) here += third[a] * curve->offset[c][begin + a];
+            mean += 0.5 * here * here / curve->spans;
+        }
+    }
+    const double unit = CUBIC_THIRD * 2 * curve->half;
+    return mean / (unit * unit);
+}
+
 /* Solves for the coefficients with the present weights; scatter is the SD of the points across the line, by which the
- * penalty is weighed. covariance (may be NULL): inverse of the normal matrix. false where it is singular. */
-static bool solve(const work *w, plm_curve *curve, double scatter, double covariance[PLM_CURVE_BASIS][PLM_CURVE_BASIS])
+ * penalty is weighed; skew2: variance of the cubic term, 0: no prior. covariance (may be NULL): inverse of the normal
+ * matrix. false where it is singular. */
+static bool solve(const work *w, plm_curve *curve, double scatter, double skew2,
+                  double covariance[PLM_CURVE_BASIS][PLM_CURVE_BASIS])
 {
     const int n = plm_curve_basis_count(curve);
     double matrix[PLM_CURVE_BASIS * PLM_CURVE_BASIS] = {0}, right[2][PLM_CURVE_BASIS] = {{0}};
@@ -129,6 +177,8 @@ static bool solve(const work *w, plm_curve *curve, double scatter, double covari
     }
     const double bend = expected_bend * 2 * curve->half;
     add_penalty(curve, scatter * scatter / (bend * bend), matrix);
+    const double third = CUBIC_THIRD * 2 * curve->half;
+    if (skew2 > 0) add_skew_penalty(curve, scatter * scatter / (2 * third * third * skew2), matrix);
     double trace = 0, factor[PLM_CURVE_BASIS * PLM_CURVE_BASIS];
     for (int a = 0; a < n; a++) trace += matrix[a * n + a];
     for (int a = 0; a < n; a++) matrix[a * n + a] += 1e-12 * trace; /* empty spans */
@@ -158,7 +208,7 @@ static double scatter_of(const work *w)
     return sqrt(0.5 * sum / weights);
 }
 
-static bool fit(work *w, plm_centre_line *out)
+static bool fit(work *w, double skew, plm_centre_line *out)
 {
     plm_curve *curve = &out->curve;
     parameters(curve, w);
@@ -171,9 +221,12 @@ static bool fit(work *w, plm_centre_line *out)
     const double middle[2] = {plm_order_median(w->distance, w->count), plm_order_median(w->scratch, w->count)};
     for (int c = 0; c < 2; c++)
         for (int a = 0; a < plm_curve_basis_count(curve); a++) curve->offset[c][a] = middle[c];
+    double skew2 = curve->degree == 3 ? skew * skew : 0;
     for (int round = 0; round < ROUNDS; round++) {
         weigh(curve, distances(curve, w), w);
-        if (!solve(w, curve, scatter_of(w), round == ROUNDS - 1 ? out->covariance : NULL)) return false;
+        if (!solve(w, curve, scatter_of(w), skew2, round == ROUNDS - 1 ? out->covariance : NULL)) return false;
+        if (skew2 > 0)
+            skew2 = (SKEW_FREEDOM * skew * skew + 2 * squared_skew(curve)) / (SKEW_FREEDOM + 2 * curve->spans);
     }
     out->distance = distances(curve, w);
     out->scatter = scatter_of(w);
@@ -182,10 +235,10 @@ static bool fit(work *w, plm_centre_line *out)
 }
 
 plm_status plm_centre_line_fit(const double (*xyz)[3], size_t count, const double begin[3], const double end[3],
-                               int degree, int spans, plm_centre_line *line, plm_error *error)
+                               plm_line_shape shape, plm_centre_line *line, plm_error *error)
 {
     plm_centre_line out = {0};
-    if (!plm_curve_line(begin, end, degree, spans, &out.curve))
+    if (!plm_curve_line(begin, end, shape.degree, shape.spans, &out.curve))
         return plm_fail(error, PLM_E_DEGENERATE, "the ends of the centre line coincide");
     const int coefficients = plm_curve_basis_count(&out.curve);
     if (count <= (size_t)coefficients)
@@ -201,8 +254,9 @@ plm_status plm_centre_line_fit(const double (*xyz)[3], size_t count, const doubl
     if (block && w.cell) {
         w.t = block, w.weight = block + count, w.distance = block + 2 * count, w.scratch = block + 3 * count;
         w.sum = block + 4 * count;
-        status = fit(&w, &out) ? PLM_OK
-                               : plm_fail(error, PLM_E_DEGENERATE, "the %zu points determine no centre line", count);
+        status = fit(&w, shape.skew, &out)
+                     ? PLM_OK
+                     : plm_fail(error, PLM_E_DEGENERATE, "the %zu points determine no centre line", count);
     }
     plm_free(block);
     plm_free(w.cell);

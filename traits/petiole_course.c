@@ -82,7 +82,8 @@ static plm_status fit_course(const plm_tube_points *points, const double base[3]
     plm_centre_line line;
     plm_error why = {0};
     const double(*xyz)[3] = (const double(*)[3])points->xyz;
-    const plm_status status = plm_centre_line_fit(xyz, points->count, base, way->far, 3, 1, &line, &why);
+    const plm_status status =
+        plm_centre_line_fit(xyz, points->count, base, way->far, (plm_line_shape){3, 1, 0}, &line, &why);
     if (status != PLM_OK) return status;
     way->curve = line.curve;
     measure(points, &way->curve, distance, t);

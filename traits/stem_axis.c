@@ -88,18 +88,20 @@ static int spans_for(double length, double radius, int most)
 /* Centre line in two passes: the first finds the radius that says how many spans the second may have. */
 static plm_status centroids(const plm_tube_points *points, double ends[2][3], plm_centre_line *line, plm_error *error)
 {
-    plm_status status =
-        plm_centre_line_fit((const double(*)[3])points->xyz, points->count, ends[0], ends[1], 3, 1, line, error);
+    plm_status status = plm_centre_line_fit((const double(*)[3])points->xyz, points->count, ends[0], ends[1],
+                                            (plm_line_shape){3, 1, 0}, line, error);
     if (status != PLM_OK) return status;
     const int spans = spans_for(2 * line->curve.half, line->distance, TUBE_SPANS);
-    return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, ends[0], ends[1], 3, spans, line, error);
+    return plm_centre_line_fit((const double(*)[3])points->xyz, points->count, ends[0], ends[1],
+                               (plm_line_shape){3, spans, 0}, line, error);
 }
 
 static plm_status fit_both(const plm_tube_points *points, double ends[2][3], int spans, plm_centre_line *line,
                            plm_tube *tube, plm_error *error)
 {
     const double(*xyz)[3] = (const double(*)[3])points->xyz;
-    const plm_status status = plm_centre_line_fit(xyz, points->count, ends[0], ends[1], 3, spans, line, error);
+    const plm_status status =
+        plm_centre_line_fit(xyz, points->count, ends[0], ends[1], (plm_line_shape){3, spans, 0}, line, error);
     if (status != PLM_OK) return status;
     return plm_tube_fit(xyz, points->count, &line->curve, PLM_TUBE_TAPERED, tube, error);
 }

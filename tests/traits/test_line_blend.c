@@ -38,7 +38,7 @@ static void fit(uint64_t seed, plm_centre_line *line, plm_tube *tube)
     double xyz[POINTS][3];
     plm_error error = {0};
     make(seed, xyz);
-    assert_ok(plm_centre_line_fit((const double(*)[3])xyz, POINTS, base, end, 3, 1, line, &error));
+    assert_ok(plm_centre_line_fit((const double(*)[3])xyz, POINTS, base, end, (plm_line_shape){3, 1, 0}, line, &error));
     assert_ok(plm_tube_fit((const double(*)[3])xyz, POINTS, &line->curve, PLM_TUBE_TAPERED, tube, &error));
 }
 
