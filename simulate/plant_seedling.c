@@ -164,6 +164,7 @@ static void arch_petiole(plm_random *random, double youth, plm_leaf_spec *leaf)
     leaf->zenith = plm_draw_angle(random, 42, 56);
     leaf->zenith -= youth * plm_draw_angle(random, 15, 28);
     leaf->petiole_bend.pitch = plm_draw_angle(random, 12, 50);
+    leaf->petiole_bend.pitch_power = plm_between(random, 0.7, 1.6); /* most near the stem, or near the blade */
     leaf->petiole_bend.yaw = plm_draw_angle(random, -6, 6);
 }
 
