@@ -5,6 +5,7 @@
 #include "segment/junction.h"
 #include "segment/rosette_core.h"
 #include "segment/scratch.h"
+#include "segment/side_groups.h"
 #include "segment/strap_leaves.h"
 
 #include <math.h>

@@ -114,7 +114,7 @@ static void add_penalty(const plm_curve *curve, double factor, double *matrix)
         }
 }
 
-/* The third derivative within a span, which is one number there: of the coefficients from the number that is returned on. */
+/* How the third derivative within a span, which is one number there, follows from four coefficients; gives the number of the first. */
 static int third_derivative(const plm_curve *curve, int span, double third[4])
 {
     const double length = 2.0 / curve->spans, middle = -1 + length * (span + 0.5), inside = 0.25 * length;
@@ -125,7 +125,7 @@ static int third_derivative(const plm_curve *curve, int span, double third[4])
     return begin;
 }
 
-/* The same of the squared third derivative. */
+/* Adds factor x the integral of u'''^2 likewise. */
 static void add_skew_penalty(const plm_curve *curve, double factor, double *matrix)
 {
     const int n = plm_curve_basis_count(curve);

@@ -218,28 +218,13 @@ static bool is_free(const petiole *p, const plm_curve *line, double t, double me
     return plm_stem_ring_left(p->stem->axis, line, t, radius_at(p, t), p->margin, mean) >= least_ring;
 }
 
-/* Where the line enters the stem on its way back; -INFINITY: nowhere. Behind the stem it is free again, where points are none of the
- * petiole's. */
-static double enters_stem(const petiole *p, const plm_curve *line)
-{
-    const double step = fmax(0.25 * p->radius / line->half, 0.01);
-    bool was_outside = false;
-    for (double t = 1; p->stem && t > -longest_way; t -= step) {
-        double point[3], foot;
-        plm_curve_point(line, t, point);
-        const bool outside = plm_stem_off(p->stem->axis, point, &foot) > 0;
-        if (was_outside && !outside) return t;
-        was_outside = outside;
-    }
-    return -INFINITY;
-}
-
 /* The points where most of the ring is outside of the stem, of a rosette those clear of the others' feet; centred: without the
  * bias that the oblique cut gives the centroids. Gives the least of their parameters on the line. */
 static double gather_free(const petiole *p, const plm_curve *line, bool centred, plm_tube_points *kept)
 {
     const double crowded = fmin(crowded_radii * p->radius, crowded_most * plm_curve_length(line, -1, 1));
-    const double from = enters_stem(p, line);
+    /* behind the stem the line is free again, where points are none of the petiole's; NAN: it passes the stem by */
+    const double from = p->stem ? plm_stem_crossing(p->stem->axis, line, 0, -longest_way) : NAN;
     double low = 1;
     kept->count = 0;
     for (size_t i = 0; i < p->points.count; i++) {
@@ -347,7 +332,7 @@ static size_t positions(const petiole *p, const plm_curve *line, double *positio
 }
 
 /* Base: where the line crosses the stem's surface, and where the petiole comes clear of it, which points of the stem that are called
- * petiole leave where it is (of 1000 virtual petioles in noise the RMSE along them is 0.24 to 1.2 mm for 0.9 to 4.9 by the first points;
+ * petiole leave where it is (of 385 arched virtual petioles in noise the RMSE along them is 0.24 to 1.2 mm for 0.9 to 4.9 by the first points;
  * the steeper against the stem the less). Of a tube, which has no such place, half the oblique cut behind its first points, as the cut
  * begins r cot(angle) before the crossing. The two are weighed by what is known of them: at shallow angles the crossing moves by
  * 1 / sin(angle) of any error of the stem's radius, and a line that passes the stem by tells nothing. Where the labels are

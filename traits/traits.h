@@ -49,9 +49,8 @@ enum {
     PLM_NEEDS_SAMPLING = 1 << 9, /**< spacing and noise of the plant */
     PLM_NEEDS_LIGHT = 1 << 10,   /**< absorbed light of the surfaces */
     PLM_NEEDS_BASE = 1 << 11,    /**< axes, where the plant is so low that its leaves may hide its lowest surface */
-    PLM_NEEDS_NO_ORGANS =
-        1
-        << 12 /**< no stage: points alone tell the trait where the plant can't be cut into organs (not: for want of time) */
+    /** No stage: points alone tell the trait where the plant can't be cut into organs (not: for want of time). */
+    PLM_NEEDS_NO_ORGANS = 1 << 12
 };
 
 typedef enum plm_state { PLM_STATE_OK = 0, PLM_STATE_NOT_APPLICABLE, PLM_STATE_FAILED } plm_state;
