@@ -223,8 +223,9 @@ static bool is_free(const petiole *p, const plm_curve *line, double t, double me
 static double gather_free(const petiole *p, const plm_curve *line, bool centred, plm_tube_points *kept)
 {
     const double crowded = fmin(crowded_radii * p->radius, crowded_most * plm_curve_length(line, -1, 1));
-    /* behind the stem the line is free again, where points are none of the petiole's; NAN: it passes the stem by */
-    const double from = p->stem ? plm_stem_crossing(p->stem->axis, line, 0, -longest_way) : NAN;
+    /* behind the stem the line is free again, where points are none of the petiole's, unless it passes the stem by */
+    const double entry = p->stem ? plm_stem_crossing(p->stem->axis, line, 0, -longest_way) : NAN;
+    const double from = isnan(entry) ? -INFINITY : entry;
     double low = 1;
     kept->count = 0;
     for (size_t i = 0; i < p->points.count; i++) {
