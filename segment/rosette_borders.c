@@ -7,7 +7,6 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
-#include "segment/core.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -45,7 +44,7 @@ typedef struct work {
     const float (*xyz)[3];
     const uint32_t *row;
     size_t count;
-    const plm_sketch *sketch;
+    const plm_scale *scale;
     plm_segmentation *out;
     rosette_leaf *leaf;
     double crown;
@@ -61,7 +60,7 @@ static int nearer(const void *a, const void *b)
 static double half_width(const work *w, const rosette_leaf *leaf)
 {
     double mean[3] = {0}, moment[6] = {0}, value[3], vector[3][3];
-    const double noise = w->sketch->scale.noise, each = 1 / (double)leaf->blade;
+    const double noise = w->scale->noise, each = 1 / (double)leaf->blade;
     for (size_t i = 0; i < leaf->count; i++)
         for (int a = 0; leaf->place[i].is_blade && a < 3; a++) mean[a] += each * w->xyz[leaf->place[i].point][a];
     for (size_t i = 0; i < leaf->count; i++) {
@@ -113,7 +112,7 @@ static void gather(work *w, const double core[3], place *all)
 
 static bool is_told(const work *w, const rosette_leaf *leaf)
 {
-    return leaf->half_width > WIDE * w->sketch->scale.radius && leaf->border > LEAST_PETIOLE * leaf->tip &&
+    return leaf->half_width > WIDE * w->scale->radius && leaf->border > LEAST_PETIOLE * leaf->tip &&
            leaf->tip > w->crown;
 }
 
@@ -131,7 +130,7 @@ static void set_border(const work *w, const rosette_leaf *leaf, double share)
     double border = w->crown + share * (leaf->tip - w->crown);
     if (leaf->count < FEWEST_POINTS || !(leaf->tip > OUT_OF_CROWN * w->crown)) return;
     if (is_told(w, leaf) && fabs(leaf->border - border) < FAR_OFF * border) {
-        const double wide = leaf->half_width / w->sketch->scale.radius;
+        const double wide = leaf->half_width / w->scale->radius;
         const double own = (wide - UNSURE) / (SURE - UNSURE); /* above 0, as UNSURE is below WIDE */
         if (own >= 1) return;
         border += own * (leaf->border - border);
@@ -140,21 +139,22 @@ static void set_border(const work *w, const rosette_leaf *leaf, double share)
         w->out->label[w->row[leaf->place[i].point]] = leaf->place[i].off > border ? PLM_LABEL_LEAF : PLM_LABEL_PETIOLE;
 }
 
-plm_status plm_rosette_borders(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_sketch *sketch,
-                               plm_segmentation *out, plm_error *error)
+bool plm_rosette_is_noisy(const plm_scale *scale)
 {
-    if (!(sketch->scale.noise > NOISY * sketch->scale.radius)) return PLM_OK;
-    uint32_t core;
-    const plm_status status = plm_sketch_core(sketch, &core, error);
-    if (status != PLM_OK || core == UINT32_MAX) return status;
+    return scale->noise > NOISY * scale->radius;
+}
+
+plm_status plm_rosette_borders(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
+                               const double core[3], plm_segmentation *out, plm_error *error)
+{
+    if (!plm_rosette_is_noisy(scale)) return PLM_OK;
     plm_scratch scratch = {.error = error};
-    work w = {.xyz = xyz, .row = row, .count = count, .sketch = sketch, .out = out};
+    work w = {.xyz = xyz, .row = row, .count = count, .scale = scale, .out = out};
     w.leaf = plm_scratch_take(&scratch, out->leaf_count + 1, sizeof *w.leaf);
     place *all = plm_scratch_take(&scratch, count + 1, sizeof *all);
     double *share = plm_scratch_take(&scratch, out->leaf_count + 1, sizeof *share);
     if (!scratch.failed) {
-        const float *middle = sketch->working.xyz[core];
-        gather(&w, (double[3]){middle[0], middle[1], middle[2]}, all);
+        gather(&w, core, all);
         double farthest = 0;
         for (size_t k = 0; k < out->leaf_count; k++) {
             look(&w, &w.leaf[k]);
@@ -162,7 +162,7 @@ plm_status plm_rosette_borders(const float (*xyz)[3], const uint32_t *row, size_
         }
         w.crown = CROWN * farthest;
         const double usual = usual_share(&w, share);
-        for (size_t k = 0; k < out->leaf_count && usual > 0; k++) set_border(&w, &w.leaf[k], usual);
+        for (size_t k = 0; k < out->leaf_count && !isnan(usual); k++) set_border(&w, &w.leaf[k], usual);
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;

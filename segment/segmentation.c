@@ -4,9 +4,11 @@
 
 #include "cloud/voxel_pitch.h"
 #include "segment/blade_base.h"
+#include "segment/core.h"
 #include "segment/head.h"
 #include "segment/petiole_foot.h"
 #include "segment/rosette_borders.h"
+#include "segment/rosette_petioles.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
 
@@ -159,6 +161,19 @@ static plm_status find_voxels(const float (*xyz)[3], size_t count, plm_scale *sc
     return status;
 }
 
+/* Of a blurred rosette the leaves tell of each other whose the petioles are, and where the blades begin. */
+static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_sketch *sketch,
+                                   plm_segmentation *out, plm_error *error)
+{
+    uint32_t core;
+    plm_status status = plm_sketch_core(sketch, &core, error);
+    const float *at = status == PLM_OK && core != UINT32_MAX ? sketch->working.xyz[core] : NULL;
+    const double middle[3] = {at ? at[0] : 0, at ? at[1] : 0, at ? at[2] : 0};
+    if (at) status = plm_rosette_petioles(xyz, row, count, middle, out, error);
+    if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    return status == PLM_OK && at ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
+}
+
 /* Petioles, told at all points. Those of a rosette have no stem that hides their feet; where compound leaves begin their
  * leaflets have told. */
 static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, plm_sketch *sketch,
@@ -168,10 +183,10 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
     if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
     if (sketch->habit == PLM_HABIT_COMPOUND) return status;
     if (status == PLM_OK) status = find_voxels(xyz, count, &sketch->scale, error);
-    if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
-    if (status == PLM_OK && sketch->habit == PLM_HABIT_ROSETTE)
-        status = plm_rosette_borders(xyz, row, count, sketch, out, error);
-    return status;
+    if (status != PLM_OK) return status;
+    if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))
+        return rosette_petioles(xyz, row, count, sketch, out, error);
+    return plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
 }
 
 plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,

@@ -3,6 +3,7 @@
 
 #include "segment/broken_tubes.h"
 #include "support/label_score.h"
+#include "support/made_sketch.h"
 #include "support/virtual_plant.h"
 
 #include <math.h>
@@ -49,20 +50,6 @@ static void add_blade(plm_sketch *sketch, double y, double z, double from, doubl
         }
 }
 
-/* Distances from the stem (x below 0), and the foot that is nearest. */
-static void grow(plm_sketch *sketch)
-{
-    plm_error error = {0};
-    static uint32_t source[ROWS];
-    static int32_t origin[ROWS];
-    size_t sources = 0;
-    for (uint32_t i = 0; i < sketch->working.count; i++)
-        if (is_stem[i]) source[sources++] = i;
-    const plm_walk walk = {.source = source, .source_count = sources, .distance = distance, .origin = origin};
-    assert_ok(plm_graph_walk(&sketch->graph, &walk, &error));
-    for (size_t i = 0; i < sketch->working.count; i++) group[i] = origin[i] < 0 ? -1 : truth[source[origin[i]]];
-}
-
 /* Links that are made; bare: out, whether the second foot bears no blade. */
 static size_t bridge(plm_sketch *sketch, bool *bare)
 {
@@ -70,7 +57,7 @@ static size_t bridge(plm_sketch *sketch, bool *bare)
     plm_side_group foot[2] = {{.has_foot = true}, {.has_foot = true}};
     const plm_side_groups groups = {.count = 2, .group = foot, .distance = distance};
     assert_ok(plm_graph_build((const float(*)[3])xyz, sketch->working.count, 10, 3 * STEP, &sketch->graph, &error));
-    grow(sketch);
+    made_sketch_grow(sketch, is_stem, truth, distance);
     for (size_t i = 0; i < sketch->working.count; i++)
         if (group[i] >= 0 && !is_tube[i]) foot[group[i]].blades = 1;
     *bare = !foot[1].blades;
@@ -98,7 +85,7 @@ static void a_gap_before_a_leaf_that_touches_is_bridged(void **unused)
     bool bare;
     assert_int_equal(bridge(&sketch, &bare), 1);
     assert_true(bare);
-    grow(&sketch);
+    made_sketch_grow(&sketch, is_stem, truth, distance);
     size_t wrong = 0;
     for (size_t i = 0; i < sketch.working.count; i++) wrong += group[i] != truth[i];
     assert_true(wrong < 20);

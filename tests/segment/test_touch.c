@@ -7,6 +7,7 @@
 #include "segment/side_groups.h"
 #include "segment/touch_cut.h"
 #include "support/label_score.h"
+#include "support/made_sketch.h"
 #include "support/virtual_plant.h"
 
 enum { ROWS = 4000 };
@@ -49,18 +50,12 @@ static void link_all(plm_sketch *sketch)
     assert_ok(plm_graph_build((const float(*)[3])xyz, sketch->working.count, 10, 3 * STEP, &sketch->graph, &error));
 }
 
-/* Distances from x = 0, and the foot that is nearest: what plain growing gives. */
+/* From x = 0. */
 static void grow(plm_sketch *sketch)
 {
-    plm_error error = {0};
-    static uint32_t source[ROWS];
-    static int32_t origin[ROWS];
-    size_t sources = 0;
-    for (uint32_t i = 0; i < sketch->working.count; i++)
-        if (xyz[i][0] <= 0) source[sources++] = i;
-    const plm_walk walk = {.source = source, .source_count = sources, .distance = distance, .origin = origin};
-    assert_ok(plm_graph_walk(&sketch->graph, &walk, &error));
-    for (size_t i = 0; i < sketch->working.count; i++) group[i] = origin[i] < 0 ? -1 : truth[source[origin[i]]];
+    static bool is_source[ROWS];
+    for (size_t i = 0; i < sketch->working.count; i++) is_source[i] = xyz[i][0] <= 0;
+    made_sketch_grow(sketch, is_source, truth, distance);
 }
 
 static size_t count_wrong(const plm_sketch *sketch)
