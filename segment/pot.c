@@ -365,7 +365,10 @@ static void try_axis(hunt *h, const double centre[2], const plm_level *level)
 {
     plm_pot pot = {.round = !level, .centre = {centre[0], centre[1]}, .foot = h->map.low};
     double mean = 0;
-    for (int d = 0; d < PLM_OUTLINE; d++) mean += level ? level->radius[d] / PLM_OUTLINE : 1.0 / PLM_OUTLINE;
+    for (int d = 0; d < PLM_OUTLINE; d++) {
+        if (level && !(level->radius[d] > 0)) return; /* one row of cells: no outline */
+        mean += level ? level->radius[d] / PLM_OUTLINE : 1.0 / PLM_OUTLINE;
+    }
     for (int d = 0; d < PLM_OUTLINE; d++) pot.shape[d] = level ? level->radius[d] / mean : 1;
     const double area = wall_around(h->stand, &h->map, &pot, !level);
     if (!(area > 0)) return;
