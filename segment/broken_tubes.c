@@ -56,11 +56,12 @@ static bool way_ahead(const plm_sketch *s, const float *distance, uint32_t end, 
         counts[sum == before]++;
         for (int a = 0; a < 3; a++) sum[a] += s->working.xyz[i][a];
     }
+    if (!(counts[0] > 0 && counts[1] > 0)) return false;
     for (int a = 0; a < 3; a++) {
         middle[a] = last[a] / counts[0];
         along[a] = middle[a] - before[a] / counts[1];
     }
-    return counts[0] > 0 && counts[1] > 0 && plm_normalise(along) > 0;
+    return plm_normalise(along) > 0;
 }
 
 /* The loose tube's point ahead that is nearest to the foot's end; UINT32_MAX: there is none. */

@@ -147,7 +147,6 @@ bool plm_rosette_is_noisy(const plm_scale *scale)
 plm_status plm_rosette_borders(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                                const double core[3], plm_segmentation *out, plm_error *error)
 {
-    if (!plm_rosette_is_noisy(scale)) return PLM_OK;
     plm_scratch scratch = {.error = error};
     work w = {.xyz = xyz, .row = row, .count = count, .scale = scale, .out = out};
     w.leaf = plm_scratch_take(&scratch, out->leaf_count + 1, sizeof *w.leaf);

@@ -9,8 +9,8 @@ bool plm_rosette_is_noisy(const plm_scale *scale);
 
 /** Moves the border between petiole and blade, in the labels of a rosette's points, of leaves whose blades are narrow in noise (the more, the
  * narrower), and of those that are unlike the others, to the share of the way from crown to tip at which it lies in most
- * leaves with wide blades. xyz: count points; row[i]: where point i is in out; core: where the petioles meet. Where fewer than three leaves tell, and where
- * there is hardly any noise, all stays. PLM_E_MEMORY. */
+ * leaves with wide blades. xyz: count points; row[i]: where point i is in out; core: where the petioles meet. Where fewer than
+ * three leaves tell, all stays. For noisy rosettes. PLM_E_MEMORY. */
 plm_status plm_rosette_borders(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                                const double core[3], plm_segmentation *out, plm_error *error);
 

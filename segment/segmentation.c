@@ -167,11 +167,13 @@ static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, s
 {
     uint32_t core;
     plm_status status = plm_sketch_core(sketch, &core, error);
-    const float *at = status == PLM_OK && core != UINT32_MAX ? sketch->working.xyz[core] : NULL;
-    const double middle[3] = {at ? at[0] : 0, at ? at[1] : 0, at ? at[2] : 0};
-    if (at) status = plm_rosette_petioles(xyz, row, count, middle, out, error);
+    if (status != PLM_OK) return status;
+    if (core == UINT32_MAX) return plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    const float *at = sketch->working.xyz[core];
+    const double middle[3] = {at[0], at[1], at[2]};
+    status = plm_rosette_petioles(xyz, row, count, middle, out, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
-    return status == PLM_OK && at ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
+    return status == PLM_OK ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
 }
 
 /* Petioles, told at all points. Those of a rosette have no stem that hides their feet; where compound leaves begin their
