@@ -32,7 +32,12 @@ static const double COMPOUND_BLADES = 1.23, COMPOUND_PAIRS = 1.4;
  * 0.54). Straps that thick feet tell begin at 0.42 at most, nearly all at less than a third (26 virtual ones from depth cameras, 15
  * real ones); 200 virtual plants with petioles at 0.45 and more. Two of those that begin beyond a half had thick feet: a tomato in
  * noise (0.66), and a real one (0.79) so young that two or three leaves stand on one foot and are better parted as straps. */
-static const double ON_PETIOLES = 0.5, STRAP_ON_PETIOLES = 0.75;
+static const double ON_PETIOLES = 0.5, STRAP_SURE = 0.75;
+/* Single blades that are no longer than this (squared length over area: a disc has 1.27) are no straps either but by as much evidence,
+ * tubes off the stem included: short petioles look thick in noise (0.53 and 0.42 of a cucumber and an eggplant of 1.3 and 2.0 from
+ * depth cameras, of 280 plants with petioles there). Straps that thick feet tell are longer (2.96 and more but for a seedling of 2.1
+ * and 0.95, 15 real and 42 virtual), or torn to several blades a leaf by the noise. */
+static const double STRAP_WIDE = 2.2;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
  * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
  * tube at their foot than petioles (counted: noise hides a few large leaves' feet), however many blades a leaf has: noise tears
@@ -202,13 +207,16 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         const bool many = !sketch->scale.rises && (double)tally.blades >= MANY_BLADES * (double)tally.leafy;
         const bool slim = !many && tally.slim_strap + tubes * tally.area > STRAP_WITH_TUBES * tally.area;
         bool strap = slim || have_thick_feet(sketch, &tally, many);
-        const bool is_doubtful = strap && !slim && compound && tally.strap <= STRAP_ON_PETIOLES * tally.area;
+        const bool is_doubtful = strap && !slim && tally.strap <= STRAP_SURE * tally.area;
         const bool hidden = may_hide_feet(sketch, &tally);
         if (is_doubtful || (!strap && hidden)) {
             blade_shape shape;
             const plm_status status = find_blade_shape(sketch, groups, &shape, error);
             if (status != PLM_OK) return status;
-            strap = (is_doubtful && shape.start <= ON_PETIOLES) || (hidden && have_long_blades(&tally, &shape));
+            const bool wide = shape.elongation > 0 && shape.elongation <= STRAP_WIDE &&
+                              tally.strap + tubes * tally.area <= STRAP_SURE * tally.area;
+            if (is_doubtful) strap = compound ? shape.start <= ON_PETIOLES : !wide;
+            strap = strap || (hidden && have_long_blades(&tally, &shape));
         }
         *habit = strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
     }
