@@ -17,7 +17,9 @@ plm_status plm_sparse_tips(const plm_index *index, const float (*xyz)[3], size_t
 plm_status plm_are_voxel_means(const float (*xyz)[3], size_t count, double cell, bool *answer, plm_error *error);
 
 /** As plm_clean, and tip[i] (count of cloud) is true for what it drops though it is a leaf's sparse tip, a stem's sparse foot,
- * or the like (plm_sparse_tips): true of none in clouds of voxel means. Organs are better found without them, as the way along a sparse rim is no petiole. tip may be NULL. */
+ * or the like (plm_sparse_tips): true of none in clouds of voxel means. Organs are better found without them, as the way along a
+ * sparse rim is no petiole. Where they are more than 0.004 of what is kept they are whole leaves that were seen seldom: then they are kept,
+ * and none is a tip. tip may be NULL: what is sparse is dropped. */
 plm_status plm_clean_but_tips(const plm_cloud *cloud, const uint8_t *label, bool *keep, bool *tip, double *spacing,
                               plm_error *error);
 

@@ -4,24 +4,27 @@
  * more.) */
 #include "segment/tassel.h"
 
+#include "cloud/neighbours.h"
 #include "segment/merge_tree.h"
 #include "segment/scratch.h"
 
 #include <math.h>
 
-enum { STRANDS = 4, STRAND_LEAST = 5 /* points */, OTHERS = 3 /* leaves whose widths tell */ };
+enum { STRANDS = 4, STRAND_LEAST = 5 /* points */, OTHERS = 3 /* leaves whose widths tell */, SECOND = 2 };
 static const double STANDS_OUT = 0.1; /* of the leaf's length, beyond the fork: less is no strand */
 static const double THIN = 0.4;       /* width of a strand, of the other leaves' median width */
 static const double MEAN = 0.5; /* the same over all strands and what they stand on: a torn rim has thin ends too */
 /* Where all its strands are thin: the share of the points that they hold at least. Of virtual tassels half and more, of a narrow
  * leaf with fringes a tenth. */
 static const double STRAND_SHARE = 0.25;
-static const double TOP = 0.9; /* of the highest foot: leaves from there on may be a tassel */
+static const float SPARSEST = 25; /* of the usual area: points that stand for more are strays */
+static const double TOP = 0.9;    /* of the highest foot: leaves from there on may be a tassel */
 
 /* A leaf, or what was taken for one. */
 typedef struct blade {
     size_t points, thin, wide; /* thin, wide: strands */
     size_t strand_points;      /* of thin ones */
+    double area;               /* that its points stand for */
     double length, strands;    /* strands: length of all of them together */
     float fork, wide_fork;     /* the nearest fork of its thin strands, and of its wide ones */
     bool is_tassel;
@@ -29,6 +32,7 @@ typedef struct blade {
 
 typedef struct strand {
     size_t points;
+    double area;
     float tip, fork;
     int32_t leaf;
     bool is_thin;
@@ -42,9 +46,27 @@ typedef struct work {
     blade *blade;
     strand *strand;
     float *distance, *reach, *width;
+    float *area; /* that each point stands for */
     int32_t *branch;
     size_t blades, strands;
 } work;
+
+/* A leaf that was seen seldom, with its points far apart, is not thin for that. The second neighbour's distance is the same on a strand and
+ * on a blade. */
+static plm_status find_areas(work *w, plm_error *error)
+{
+    const plm_thinned *points = &w->sketch->working;
+    const size_t count = points->count;
+    float *squared = plm_scratch_take(&w->scratch, count * SECOND, sizeof *squared);
+    if (!squared || count <= SECOND) return squared ? PLM_OK : PLM_E_MEMORY;
+    const plm_status status = plm_neighbour_table((const float(*)[3])points->xyz, count, SECOND, NULL, squared, error);
+    if (status != PLM_OK) return status;
+    for (size_t i = 0; i < count; i++) w->area[i] = squared[i * SECOND + SECOND - 1];
+    const float usual = plm_quantile(w->area, count, 0.5); /* it reorders */
+    for (size_t i = 0; i < count; i++)
+        w->area[i] = fminf(fmaxf(squared[i * SECOND + SECOND - 1], usual), SPARSEST * usual);
+    return PLM_OK;
+}
 
 static void measure_blades(work *w)
 {
@@ -55,6 +77,7 @@ static void measure_blades(work *w)
         blade *b = &w->blade[s->leaf[i]];
         w->distance[i] = w->from_base[i];
         b->points++;
+        b->area += w->area[i];
         if (isfinite(w->from_base[i])) b->length = fmax(b->length, w->from_base[i] - w->foot[s->leaf[i]]);
     }
     for (size_t i = 0; i < s->working.count; i++)
@@ -64,11 +87,9 @@ static void measure_blades(work *w)
 /* The median width of the other leaves, 0 if they are too few; w->width: room for one a leaf. */
 static double width_of_others(work *w, size_t leaf)
 {
-    const double cell = w->sketch->working.cell;
     size_t count = 0;
     for (size_t k = 0; k < w->blades; k++)
-        if (k != leaf && w->blade[k].length > 0)
-            w->width[count++] = (float)((double)w->blade[k].points * cell * cell / w->blade[k].length);
+        if (k != leaf && w->blade[k].length > 0) w->width[count++] = (float)(w->blade[k].area / w->blade[k].length);
     return count < OTHERS ? 0 : plm_quantile(w->width, count, 0.5);
 }
 
@@ -88,6 +109,7 @@ static plm_status find_strands(work *w, plm_error *error)
         if (!t->points || d < t->fork) t->fork = d;
         t->leaf = s->leaf[i];
         t->points++;
+        t->area += w->area[i];
     }
     return PLM_OK;
 }
@@ -95,13 +117,12 @@ static plm_status find_strands(work *w, plm_error *error)
 /* Scraps that nothing joins with the rest of the leaf are no strands, however thin. */
 static void judge_strands(work *w, size_t leaf, double width)
 {
-    const double cell = w->sketch->working.cell;
     blade *b = &w->blade[leaf];
     b->fork = b->wide_fork = INFINITY;
     for (size_t k = 0; k < w->strands; k++) {
         strand *t = &w->strand[k];
         if (!t->points || (size_t)t->leaf != leaf || !(t->tip - t->fork > STANDS_OUT * b->length)) continue;
-        t->is_thin = (double)t->points * cell * cell < THIN * width * (t->tip - t->fork);
+        t->is_thin = t->area < THIN * width * (t->tip - t->fork);
         float *fork = t->is_thin ? &b->fork : &b->wide_fork;
         *fork = fminf(*fork, t->fork);
         b->strands += t->tip - t->fork;
@@ -116,7 +137,6 @@ static void judge_strands(work *w, size_t leaf, double width)
 /* Gives whether there is any tassel. */
 static bool judge_blades(work *w)
 {
-    const double cell = w->sketch->working.cell;
     double top = 0;
     bool any = false;
     for (size_t k = 0; k < w->blades; k++)
@@ -129,7 +149,7 @@ static bool judge_blades(work *w)
         if (b->thin < STRANDS) continue;
         const double length = b->strands + fmax(0, fminf(b->fork, b->wide_fork) - w->foot[k]);
         const bool is_fringed = !b->wide && (double)b->strand_points < STRAND_SHARE * (double)b->points;
-        b->is_tassel = !is_fringed && (double)b->points * cell * cell < MEAN * width * length;
+        b->is_tassel = !is_fringed && b->area < MEAN * width * length;
         any = any || b->is_tassel;
     }
     return any;
@@ -163,9 +183,11 @@ plm_status plm_strap_tassel(plm_sketch *sketch, const float *from_base, double *
     w.width = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *w.width);
     w.distance = plm_scratch_take(&w.scratch, count, sizeof *w.distance);
     w.reach = plm_scratch_take(&w.scratch, count, sizeof *w.reach);
+    w.area = plm_scratch_take(&w.scratch, count, sizeof *w.area);
     w.branch = plm_scratch_take(&w.scratch, count, sizeof *w.branch);
     int32_t *number = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *number);
     plm_status status = w.scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) status = find_areas(&w, error);
     if (status == PLM_OK) {
         measure_blades(&w);
         status = find_strands(&w, error);
