@@ -9,6 +9,7 @@
 #include "segment/petiole_foot.h"
 #include "segment/rosette_borders.h"
 #include "segment/rosette_petioles.h"
+#include "segment/rosette_pieces.h"
 #include "segment/scratch.h"
 #include "segment/sketch.h"
 
@@ -173,7 +174,10 @@ static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, s
     const double middle[3] = {at[0], at[1], at[2]};
     status = plm_rosette_petioles(xyz, row, count, middle, out, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
-    return status == PLM_OK ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
+    if (status == PLM_OK) status = plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error);
+    /* Of voxel means it is ghosts that lie apart, and these are of no organ. */
+    if (status != PLM_OK || sketch->scale.pitch > 0) return status;
+    return plm_rosette_pieces(xyz, row, count, out, error);
 }
 
 /* Petioles, told at all points. Those of a rosette have no stem that hides their feet; where compound leaves begin their

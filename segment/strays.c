@@ -2,24 +2,13 @@
  * those that noise put beside them. Few as they are, they draw a leaf's surface out along the stem. */
 #include "segment/scratch.h"
 #include "segment/sketch.h"
+#include "segment/votes.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { NEIGHBOURS = 8, STEM = 1 }; /* colours: 0 other, 1 stem, 2 leaf + 2 petiole, one more blade */
 static const double SMALL = 0.008; /* share of the organ's points */
 static const double AMID = 0.7;    /* share of the neighbours beside it that are of one organ */
-
-typedef struct vote {
-    int32_t component, colour;
-} vote;
-
-static int by_component(const void *a, const void *b)
-{
-    const vote *p = a, *q = b;
-    if (p->component != q->component) return p->component < q->component ? -1 : 1;
-    return (p->colour > q->colour) - (p->colour < q->colour);
-}
 
 static int32_t colour_of(const plm_sketch *sketch, size_t i)
 {
@@ -44,22 +33,6 @@ static void recolour(plm_sketch *sketch, size_t i, int32_t colour)
     sketch->is_stem[i] = colour == STEM;
     sketch->leaf[i] = colour == STEM ? -1 : colour / 2 - 1;
     sketch->leaflet[i] = -1;
-}
-
-/* winner[c]: the colour that most votes of component c are for, where those are enough; -1 elsewhere. */
-static void count_votes(const vote *votes, size_t count, int32_t *winner)
-{
-    for (size_t begin = 0, end; begin < count; begin = end) {
-        size_t most = 0, run = begin;
-        int32_t best = 0;
-        for (end = begin; end < count && votes[end].component == votes[begin].component; end++) {
-            if (votes[end].colour != votes[run].colour) run = end;
-            if (end - run + 1 <= most) continue;
-            most = end - run + 1;
-            best = votes[end].colour;
-        }
-        winner[votes[begin].component] = (double)most >= AMID * (double)(end - begin) ? best : -1;
-    }
 }
 
 /* What the passes share; arrays of a row each point. */
@@ -93,8 +66,8 @@ static plm_status find_small(const plm_sketch *sketch, plm_scratch *scratch, str
     return PLM_OK;
 }
 
-/* Votes of the neighbours of small components, sorted by component and colour; gives how many. */
-static size_t gather_votes(const stray_work *work, vote *votes)
+/* Votes of the neighbours of small components; gives how many. */
+static size_t gather_votes(const stray_work *work, plm_vote *votes)
 {
     const plm_graph *near = &work->near;
     size_t count = 0;
@@ -102,9 +75,8 @@ static size_t gather_votes(const stray_work *work, vote *votes)
         if (!work->is_small[i]) continue;
         for (uint32_t e = near->first[i]; e < near->first[i + 1]; e++)
             if (work->colour[near->edge[e]] != work->colour[i])
-                votes[count++] = (vote){work->component[i], work->colour[near->edge[e]]};
+                votes[count++] = (plm_vote){work->component[i], work->colour[near->edge[e]]};
     }
-    qsort(votes, count, sizeof *votes, by_component);
     return count;
 }
 
@@ -115,10 +87,10 @@ plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error)
     stray_work work = {0};
     plm_scratch scratch = {.error = error};
     plm_status status = find_small(sketch, &scratch, &work);
-    vote *votes = status == PLM_OK ? plm_scratch_take(&scratch, work.near.first[count] + 1, sizeof *votes) : NULL;
+    plm_vote *votes = status == PLM_OK ? plm_scratch_take(&scratch, work.near.first[count] + 1, sizeof *votes) : NULL;
     if (status == PLM_OK && !votes) status = PLM_E_MEMORY;
     if (status == PLM_OK) {
-        count_votes(votes, gather_votes(&work, votes), work.winner);
+        plm_votes_count(votes, gather_votes(&work, votes), AMID, work.winner);
         for (size_t i = 0; i < count; i++) {
             const int32_t winner = work.winner[work.component[i]];
             if (work.is_small[i] && yields(work.colour[i], winner)) recolour(sketch, i, winner);
