@@ -12,17 +12,21 @@ static const double level_window = 3.0; /* ... averaged over so many widths */
 static const double furthest_out = 1.5; /* widths beyond the trimmed triangles that may count */
 static const double cells_per_width = 2.0;
 
-enum { RASTERS = 7 };
+enum { RASTERS = 9 };
 
 /* Rasters over the cells of the sheet's finest level. */
 typedef struct density_rasters {
-    double *mask;    /* 1 where a chosen triangle covers the cell's centre */
+    double *mask; /* 1 where a chosen triangle covers the cell's centre */
+    /* Where a triangle of a filled hole covers the centre: it has no points, and counts. Of the triangle, as the sheet has nothing to go by. */
+    double *hole_secant, *hole_height;
     double *density; /* points per surface area, blurred */
     double *level;   /* the interior's density nearby */
     double *scratch, *first, *second, *third;
 } density_rasters;
 
-static void cover_triangle(const plm_sheet_level *grid, const double *a, const double *b, const double *c, double *mask)
+/* Sets value to cover in the cells of a triangle, and height, unless NULL, to the triangle's. */
+static void cover_triangle(const plm_sheet_level *grid, const double *a, const double *b, const double *c, double cover,
+                           double *value, double *height)
 {
     const double low_v = fmin(a[1], fmin(b[1], c[1])), high_v = fmax(a[1], fmax(b[1], c[1]));
     const double low_u = fmin(a[0], fmin(b[0], c[0])), high_u = fmax(a[0], fmax(b[0], c[0]));
@@ -36,7 +40,10 @@ static void cover_triangle(const plm_sheet_level *grid, const double *a, const d
             const double ab = (b[0] - a[0]) * (v - a[1]) - (b[1] - a[1]) * (u - a[0]);
             const double bc = (c[0] - b[0]) * (v - b[1]) - (c[1] - b[1]) * (u - b[0]);
             const double ca = (a[0] - c[0]) * (v - c[1]) - (a[1] - c[1]) * (u - c[0]);
-            if (ab >= 0 && bc >= 0 && ca >= 0) mask[(size_t)row * grid->columns + (size_t)column] = 1;
+            if (!(ab >= 0 && bc >= 0 && ca >= 0)) continue;
+            const size_t at = (size_t)row * grid->columns + (size_t)column;
+            value[at] = cover;
+            if (height && ab + bc + ca > 0) height[at] = (bc * a[2] + ca * b[2] + ab * c[2]) / (ab + bc + ca);
         }
 }
 
@@ -101,13 +108,15 @@ static void sum_half(const plm_leaf_patch *patch, const plm_leaf_charts *charts,
 {
     const plm_sheet_level *grid = &patch->sheet.level[0];
     for (size_t at = 0; at < grid->columns * grid->rows; at++) {
-        if (!(r->first[at] > 0) || !(r->level[at] > 0) || r->density[at] < 0.5 * r->level[at]) continue;
+        const bool dense = r->first[at] > 0 && r->level[at] > 0 && r->density[at] >= 0.5 * r->level[at];
+        if (!dense && !(r->hole_secant[at] > 0)) continue;
         const double uvz[3] = {grid->low[0] + (double)(at % grid->columns) * grid->cell,
-                               grid->low[1] + (double)(at / grid->columns) * grid->cell, grid->height[at]};
+                               grid->low[1] + (double)(at / grid->columns) * grid->cell,
+                               dense ? grid->height[at] : r->hole_height[at]};
         double point[3];
         plm_leaf_chart_lift(&patch->chart, uvz, point);
         if (charts->count > 1 && plm_leaf_chart_of(charts, point) != patch->self) continue;
-        add_cell(areas, grid->cell * grid->cell * secant_at(grid, at), point);
+        add_cell(areas, grid->cell * grid->cell * (dense ? secant_at(grid, at) : r->hole_secant[at]), point);
     }
 }
 
@@ -118,12 +127,23 @@ plm_status plm_leaf_density(const plm_leaf_patch *patch, const uint8_t *state, c
     const size_t cells = grid->columns * grid->rows;
     double *room = plm_alloc_zero(cells, RASTERS * sizeof *room, error);
     if (!room) return PLM_E_MEMORY;
-    density_rasters r = {
-        room, room + cells, room + 2 * cells, room + 3 * cells, room + 4 * cells, room + 5 * cells, room + 6 * cells};
+    density_rasters r = {.mask = room,
+                         .hole_secant = room + cells,
+                         .hole_height = room + 2 * cells,
+                         .density = room + 3 * cells,
+                         .level = room + 4 * cells,
+                         .scratch = room + 5 * cells,
+                         .first = room + 6 * cells,
+                         .second = room + 7 * cells,
+                         .third = room + 8 * cells};
     for (size_t t = 0; t < patch->triangulation.count; t++) {
+        if (state[t] == PLM_TRIANGLE_OUT) continue;
         const uint32_t *corner = patch->triangulation.corner[t];
-        if (state[t] != PLM_TRIANGLE_OUT)
-            cover_triangle(grid, patch->uvz[corner[0]], patch->uvz[corner[1]], patch->uvz[corner[2]], r.mask);
+        const double *a = patch->uvz[corner[0]], *b = patch->uvz[corner[1]], *c = patch->uvz[corner[2]];
+        cover_triangle(grid, a, b, c, 1, r.mask, NULL);
+        if (state[t] != PLM_TRIANGLE_HOLE) continue;
+        const double secant = (patch->secant[corner[0]] + patch->secant[corner[1]] + patch->secant[corner[2]]) / 3;
+        cover_triangle(grid, a, b, c, secant, r.hole_secant, r.hole_height);
     }
     const double area = 2 * PLM_PI * grid->width * grid->width;
     for (size_t at = 0; at < cells; at++) r.density[at] = grid->weight[at] / (area * secant_at(grid, at));

@@ -1,12 +1,12 @@
-/* mesh/leaf_density.h: the area of a patch from its density of points: a second opinion beside the triangulation's, which
- * noise along the surface does not push outward. Internal. */
+/* mesh/leaf_density.h: the area of a patch from its density of points, beside the triangulation's: noise along the surface does
+ * not push it outward. Internal. */
 #ifndef PLANTIMETER_MESH_LEAF_DENSITY_H
 #define PLANTIMETER_MESH_LEAF_DENSITY_H
 
 #include "mesh/leaf_patch.h"
 
 typedef struct plm_density_areas {
-    double half;                /**< area where the blurred density is at least half of the interior's nearby */
+    double half; /**< area where the blurred density is at least half of the interior's nearby, and filled holes */
     double first[3], second[6]; /**< its moments: sums of area times x, y, z and times xx, xy, xz, yy, yz, zz */
 } plm_density_areas;
 

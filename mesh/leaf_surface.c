@@ -3,7 +3,8 @@
  * The points are cut into parts and charts (leaf_points.c, leaf_charts.c); each chart's heights are smoothed
  * (leaf_sheet.c), its points triangulated in its plane and trimmed with a local alpha (leaf_patch.c, leaf_trim.c). The
  * sum of the triangles lacks what the sampling leaves at the rim, and has what noise along the surface adds there: both
- * are proportional to the length of the rim. The density of points gives a second area (leaf_density.c). */
+ * are proportional to the length of the rim. The density of points gives a second area (leaf_density.c),
+ * the better one the more noise there is between the points. */
 #include "mesh/mesh.h"
 
 #include "cloud/linear.h"
@@ -42,6 +43,11 @@ static const double pixel_inset = 0.48, pixel_outset_density = 1.55, pixel_outse
 /* Rim x voxel / area up to which the density alone counts, and from which it counts no more; from there on the correction fades to
  * where a leaf is so narrow that its few points do not tell how they gather. */
 static const double density_wide = 0.3, density_narrow = 0.6, too_narrow = 1.2;
+/* Noise over spacing up to which the triangles alone tell the area, at which both tell it alike, and from which the density alone does:
+ * it needs no guess of the noise along the surface, but that the density is the same up to the rim. (Mean errors with true labels, before
+ * and after, six kinds as splats: 0.85 and 0.76 % at 0.5, 1.35 and 1.09 at 1.1, 1.9 and 0.84 at 1.7, 5.6 and 3.4 at 2.2; 7.5 and 4.3
+ * at 1.4 where noise is alike in all directions.) */
+static const double noise_low = 0.3, noise_even = 1.2, noise_high = 2.4;
 /* The centres of fitted discs stay inside the rim by about their own radius. */
 static const double disc_inset = 1.0;
 /* What is unsure in an area and in a plane: shares of what may be wrong, so that of all leaves 0.95 lie within 1.96 standard errors,
@@ -178,6 +184,22 @@ static double fused_area(const surface_work *work, const plm_surface_options *op
     return share * *second + (1 - share) * first;
 }
 
+/* Area of points that are no voxel means; apart: out, how far what the density says is from what the triangles say; x: noise over
+ * spacing. The centres of discs are sparse at the
+ * rim: their density says little. */
+static double scattered_area(const surface_work *work, const plm_surface_options *options, double spacing, double x,
+                             double *apart)
+{
+    const plm_trim_sums *sums = &work->sums;
+    const double along = noise_along * x, outset = rim_outset * along * along / (1 + rim_bend * along);
+    const double inset = spacing * (rim_inset - outset) + disc_inset * options->extent;
+    const double first = sums->area + sums->boundary * inset;
+    if (!(work->density.half > 0)) return first;
+    *apart = work->density.half - first;
+    if (options->extent > 0) return first;
+    return first + *apart * (1 - 0.5 * (falling(x, noise_low, noise_even) + falling(x, noise_even, noise_high)));
+}
+
 /* The area and its standard error. What is unsure: where the rim is, holes that were filled, seams, alpha, and what the second
  * area says. */
 static void measure_area(const surface_work *work, const plm_surface_options *options, plm_leaf_surface *out)
@@ -186,14 +208,15 @@ static void measure_area(const surface_work *work, const plm_surface_options *op
     const double s = out->spacing, sigma = work->noise, rim = sums->boundary;
     /* Layers lie apart across the leaf, not along it. */
     const double layers = work->layers / (double)work->points.count;
-    const double x = noise_along * sqrt(fmax(sigma * sigma - layers, 0)) / s;
-    double rim_error, second = work->density.half;
+    const double x = sqrt(fmax(sigma * sigma - layers, 0)) / s;
+    double rim_error, apart = 0;
     if (work->fused) {
+        double second;
         out->area = fused_area(work, options, s, &second);
+        if (work->density.half > 0) apart = second - out->area;
         rim_error = rim * sqrt(square(fused_known * s) + square(fused_noise * sigma));
     } else {
-        out->area = sums->area + rim * s * (rim_inset - rim_outset * x * x / (1 + rim_bend * x));
-        out->area += disc_inset * options->extent * rim;
+        out->area = scattered_area(work, options, s, x, &apart);
         rim_error =
             rim * sqrt(square(rim_known * s) + square(rim_noise * sigma) + square(disc_unsure * options->extent));
     }
@@ -202,10 +225,9 @@ static void measure_area(const surface_work *work, const plm_surface_options *op
     const double holes = hole_unsure * (sums->hole_area + sums->gap_area);
     const double seams = sums->area * seam_unsure * sqrt((double)work->chart_count);
     const double alpha = alpha_unsure * out->alpha_sensitivity * sums->area;
-    const double apart =
-        work->density.half > 0 ? (work->fused ? second_unsure_fused : second_unsure) * (second - out->area) : 0;
+    const double unsure = (work->fused ? second_unsure_fused : second_unsure) * apart;
     out->area_std_error =
-        sqrt(square(rim_error) + square(narrow) + square(holes) + square(seams) + square(alpha) + square(apart));
+        sqrt(square(rim_error) + square(narrow) + square(holes) + square(seams) + square(alpha) + square(unsure));
     out->boundary_length = rim;
     out->holes_filled = sums->hole_area;
 }
