@@ -185,8 +185,7 @@ static double fused_area(const surface_work *work, const plm_surface_options *op
 }
 
 /* Area of points that are no voxel means; apart: out, how far what the density says is from what the triangles say; x: noise over
- * spacing. The centres of discs are sparse at the
- * rim: their density says little. */
+ * spacing. The centres of discs are sparse at the rim: their density says little. */
 static double scattered_area(const surface_work *work, const plm_surface_options *options, double spacing, double x,
                              double *apart)
 {
