@@ -58,7 +58,8 @@ static plm_status find_areas(work *w, plm_error *error)
     const plm_thinned *points = &w->sketch->working;
     const size_t count = points->count;
     float *squared = plm_scratch_take(&w->scratch, count * SECOND, sizeof *squared);
-    if (!squared || count <= SECOND) return squared ? PLM_OK : PLM_E_MEMORY;
+    if (!squared) return PLM_E_MEMORY;
+    if (count <= SECOND) return PLM_OK; /* no leaf */
     const plm_status status = plm_neighbour_table((const float(*)[3])points->xyz, count, SECOND, NULL, squared, error);
     if (status != PLM_OK) return status;
     for (size_t i = 0; i < count; i++) w->area[i] = squared[i * SECOND + SECOND - 1];

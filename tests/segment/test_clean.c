@@ -213,17 +213,26 @@ static void clouds_with_known_truth_lose_floaters_only(void **unused)
     }
 }
 
+/* The cloud is the caller's: plm_scan_free. */
+static plm_scan splat_of(const char *kind, uint64_t seed, size_t points, double resolution)
+{
+    plm_error error = {0};
+    plm_virtual_plant grown;
+    plm_scan scan;
+    const plm_scan_options options = {
+        .scanner = PLM_SCANNER_SPLAT, .seed = seed, .points = points, .noise = 5e-4, .outliers = 0.01};
+    assert_ok(plm_plant_grow(kind, &(plm_plant_options){.seed = seed, .resolution = resolution}, &grown, &error));
+    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    plm_virtual_plant_free(&grown);
+    return scan;
+}
+
 /* The tips of two leaves of this maize lie beyond what most photographs show: 20 mm of them were taken for floaters. */
 static void sparse_tips_are_no_floaters(void **unused)
 {
     (void)unused;
     plm_error error = {0};
-    plm_virtual_plant grown;
-    plm_scan scan;
-    const plm_scan_options options = {
-        .scanner = PLM_SCANNER_SPLAT, .seed = 31012, .points = 45000, .noise = 5e-4, .outliers = 0.01};
-    assert_ok(plm_plant_grow("maize", &(plm_plant_options){.seed = 31012, .resolution = 0.5}, &grown, &error));
-    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    plm_scan scan = splat_of("maize", 31012, 45000, 0.5);
     const plm_cloud *cloud = &scan.cloud;
     bool *keep = malloc(cloud->count), *tip = malloc(cloud->count), *sure = malloc(cloud->count);
     plm_segmentation found;
@@ -238,10 +247,9 @@ static void sparse_tips_are_no_floaters(void **unused)
         leaf += cloud->label[i] == PLM_LABEL_LEAF;
         lost += cloud->label[i] == PLM_LABEL_LEAF && !keep[i] && !tip[i];
         assert_true(!keep[i] || !tip[i]);
-        if (sure[i] || (!keep[i] && !tip[i])) continue;
-        tips++;
-        floaters += cloud->label[i] == PLM_LABEL_OTHER;
-        unlike += found.label[i] != cloud->label[i];
+        tips += tip[i];
+        floaters += tip[i] && cloud->label[i] == PLM_LABEL_OTHER;
+        unlike += tip[i] && found.label[i] != cloud->label[i];
     }
     print_message("%zu of %zu points of the leaves lost, %zu in tips, %zu floaters among them, %zu mislabelled\n", lost,
                   leaf, tips, floaters, unlike);
@@ -252,7 +260,6 @@ static void sparse_tips_are_no_floaters(void **unused)
     free(keep);
     free(tip);
     plm_scan_free(&scan);
-    plm_virtual_plant_free(&grown);
 }
 
 /* Few photographs show the tops of these: whole leaves are as sparse as tips. The maize's highest one was taken for a tassel then. */
@@ -260,16 +267,11 @@ static void leaves_that_were_seen_seldom_are_leaves(void **unused)
 {
     (void)unused;
     static const char *const kinds[] = {"cucumber", "tomato", "maize"};
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+    for (size_t k = 0; k < COUNT(kinds); k++) {
         plm_error error = {0};
-        plm_virtual_plant grown;
-        plm_scan scan;
+        plm_scan scan = splat_of(kinds[k], 66012, 60000, 1);
         plm_segmentation found;
         label_score score;
-        const plm_scan_options options = {
-            .scanner = PLM_SCANNER_SPLAT, .seed = 66012, .points = 60000, .noise = 5e-4, .outliers = 0.01};
-        assert_ok(plm_plant_grow(kinds[k], &(plm_plant_options){.seed = 66012}, &grown, &error));
-        assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
         const plm_cloud *cloud = &scan.cloud;
         bool *keep = malloc(cloud->count), *tip = malloc(cloud->count);
         assert_ok(plm_clean_but_tips(cloud, NULL, keep, tip, NULL, &error));
@@ -285,7 +287,6 @@ static void leaves_that_were_seen_seldom_are_leaves(void **unused)
         free(keep);
         free(tip);
         plm_scan_free(&scan);
-        plm_virtual_plant_free(&grown);
     }
 }
 
@@ -294,12 +295,7 @@ static void ground_is_no_part_of_what_is_kept(void **unused)
 {
     (void)unused;
     plm_error error = {0};
-    plm_virtual_plant grown;
-    plm_scan scan;
-    const plm_scan_options options = {
-        .scanner = PLM_SCANNER_SPLAT, .seed = 31012, .points = 45000, .noise = 5e-4, .outliers = 0.01};
-    assert_ok(plm_plant_grow("maize", &(plm_plant_options){.seed = 31012, .resolution = 0.5}, &grown, &error));
-    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    plm_scan scan = splat_of("maize", 31012, 45000, 0.5);
     const size_t plants = scan.cloud.count, all = 4 * plants;
     plm_cloud cloud = {.count = all, .xyz = malloc(all * sizeof *cloud.xyz)};
     uint8_t *label = malloc(all);
@@ -326,7 +322,6 @@ static void ground_is_no_part_of_what_is_kept(void **unused)
     free(alone);
     free(tip_alone);
     plm_scan_free(&scan);
-    plm_virtual_plant_free(&grown);
 }
 
 /* The last 28 mm of this maize's highest leaf have 24 points, some three times as far apart as those before them, and the lowest 37 mm
@@ -335,12 +330,7 @@ static void a_tip_or_a_foot_may_be_three_times_as_sparse(void **unused)
 {
     (void)unused;
     plm_error error = {0};
-    plm_virtual_plant grown;
-    plm_scan scan;
-    const plm_scan_options options = {
-        .scanner = PLM_SCANNER_SPLAT, .seed = 32004, .points = 45000, .noise = 5e-4, .outliers = 0.01};
-    assert_ok(plm_plant_grow("maize", &(plm_plant_options){.seed = 32004}, &grown, &error));
-    assert_ok(plm_scan_plant(&grown, &options, &scan, &error));
+    plm_scan scan = splat_of("maize", 32004, 45000, 1);
     const plm_cloud *cloud = &scan.cloud;
     bool *keep = malloc(cloud->count), *tip = malloc(cloud->count);
     assert_ok(plm_clean_but_tips(cloud, NULL, keep, tip, NULL, &error));
@@ -356,7 +346,6 @@ static void a_tip_or_a_foot_may_be_three_times_as_sparse(void **unused)
     free(keep);
     free(tip);
     plm_scan_free(&scan);
-    plm_virtual_plant_free(&grown);
 }
 
 /* Nothing far off was dropped of this rosette, so the 19 points of its petioles' undersides that were are no floaters. */
