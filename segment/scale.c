@@ -20,6 +20,7 @@ static const double THICK_RADII =
     2; /* R in radii of the thick tubes at the peak, at least: balls on them reach across */
 static const double THICK_GROWTH = 1.1; /* of that radius to the next R, at most: that of straps grows with R */
 static const double NOISE_RADII = 10;   /* R in sigmas, at least: a noisier ball is round whatever it holds */
+static const double NOISE_WHOLE = 6;    /* the same in sigmas that are not cut by their ball (NOISE_BALL) */
 static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
@@ -165,8 +166,9 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     while (wide + 1 < trials && series[wide].radius < NOISE_BALL * series[wide].flat_noise) wide++;
     out.noise = series[wide].flat_noise;
     trial best = series[choose_radius(series, trials)];
-    const double least = NOISE_RADII * series[0].flat_noise;
-    if (best.radius < least && least < last) status = try_radius(xyz, count, least, &best, error);
+    /* as far as the series goes: a plant of a few such balls shows no tubes in larger ones */
+    const double least = fmin(fmax(NOISE_RADII * series[0].flat_noise, NOISE_WHOLE * out.noise), last);
+    if (best.radius < least) status = try_radius(xyz, count, least, &best, error);
     out.radius = best.radius;
     out.stem_radius = best.stem_radius;
     out.tube_length = best.tube_length;

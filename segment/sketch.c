@@ -1,6 +1,7 @@
 /* segment/sketch.c: from all points of a plant to the thinned copy with tube probabilities. */
 #include "segment/sketch.h"
 
+#include "segment/halo.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
 
@@ -75,6 +76,10 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
     if (status == PLM_OK) status = plm_thin(xyz, count, cell, &sketch.base, error);
     const float(*base)[3] = (const float(*)[3])sketch.base.xyz;
     if (status == PLM_OK) status = plm_find_scale(base, sketch.base.count, &sketch.scale, error);
+    if (status == PLM_OK && plm_has_halo(&sketch.scale)) { /* which had made the noise seem larger, too */
+        status = plm_halo_drop(&sketch.base, &sketch.scale, error);
+        if (status == PLM_OK) status = plm_find_scale(base, sketch.base.count, &sketch.scale, error);
+    }
     const bool any = tubes == PLM_TUBES_ANY && sketch.scale.tube_length > 0 && sketch.scale.stem_radius > 0;
     if (any && !sketch.scale.has_tubes) sketch.scale.is_doubtful = true;
     if (tubes != PLM_TUBES_SURE && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;

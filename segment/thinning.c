@@ -2,8 +2,11 @@
 #include "segment/thinning.h"
 
 #include "cloud/morton.h"
+#include "cloud/neighbours.h"
+#include "segment/scratch.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LEVELS = PLM_MORTON_BITS - 1 };
 
@@ -76,6 +79,50 @@ plm_status plm_thin_cell(const float (*xyz)[3], size_t count, size_t budget, dou
         *cell = edge;
     }
     plm_keys_free(&keys);
+    return status;
+}
+
+/* The lists of the points of each voxel, from whose they are. */
+static void list_members(plm_voxels *voxels, size_t points)
+{
+    for (size_t v = 0; v <= voxels->count; v++) voxels->first[v] = 0;
+    for (size_t i = 0; i < points; i++) voxels->first[voxels->owner[i] + 1]++;
+    for (size_t v = 0; v < voxels->count; v++) voxels->size[v] = voxels->first[v + 1];
+    for (size_t v = 0; v < voxels->count; v++) voxels->first[v + 1] += voxels->first[v];
+    for (size_t i = 0; i < points; i++) voxels->member[voxels->first[voxels->owner[i]]++] = (uint32_t)i;
+    for (size_t v = voxels->count; v > 0; v--) voxels->first[v] = voxels->first[v - 1];
+    voxels->first[0] = 0;
+}
+
+plm_status plm_thinned_keep(plm_thinned *thinned, const bool *keep, plm_error *error)
+{
+    plm_voxels *voxels = &thinned->voxels;
+    size_t kept = 0;
+    for (size_t v = 0; v < thinned->count; v++) kept += keep[v];
+    if (!kept || kept == thinned->count) return PLM_OK;
+    plm_scratch scratch = {.error = error};
+    float(*stays)[3] = plm_scratch_take(&scratch, kept, sizeof *stays);
+    uint32_t *heir = plm_scratch_take(&scratch, thinned->count, sizeof *heir);
+    plm_index *index = NULL;
+    plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    kept = 0;
+    for (size_t v = 0; v < thinned->count && status == PLM_OK; v++) {
+        if (!keep[v]) continue;
+        for (int axis = 0; axis < 3; axis++) stays[kept][axis] = voxels->xyz[v][axis];
+        heir[v] = (uint32_t)kept++;
+    }
+    if (status == PLM_OK) status = plm_index_build((const float(*)[3])stays, kept, &index, error);
+    if (status == PLM_OK) {
+        const size_t points = voxels->first[voxels->count];
+        for (size_t v = 0; v < thinned->count; v++)
+            if (!keep[v]) plm_index_nearest(index, voxels->xyz[v], 1, &heir[v], NULL);
+        for (size_t i = 0; i < points; i++) voxels->owner[i] = heir[voxels->owner[i]];
+        memcpy(voxels->xyz, stays, kept * sizeof *stays);
+        thinned->count = voxels->count = kept;
+        list_members(voxels, points);
+    }
+    plm_index_free(index);
+    plm_scratch_free(&scratch, NULL);
     return status;
 }
 

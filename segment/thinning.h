@@ -18,6 +18,10 @@ plm_status plm_thin(const float (*xyz)[3], size_t count, double cell, plm_thinne
 /** The edge of voxels of which about budget are occupied; 2^-20 of the extent when there are fewer points. */
 plm_status plm_thin_cell(const float (*xyz)[3], size_t count, size_t budget, double *cell, plm_error *error);
 
+/** Keeps the voxels of which keep says so, in their order; the points of each of the others go to the nearest that stays, whose
+ * place is then not the mean of all of its points. All stay where keep names none. PLM_E_MEMORY. */
+plm_status plm_thinned_keep(plm_thinned *thinned, const bool *keep, plm_error *error);
+
 void plm_thinned_free(plm_thinned *thinned);
 
 #endif

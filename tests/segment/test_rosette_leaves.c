@@ -100,6 +100,25 @@ static void narrow_blades_begin_where_wide_ones_do(void **unused)
     }
 }
 
+/* The far scatter of noise as wide as petioles lies between them, the more points there are the more of it. */
+static void scatter_between_blurred_petioles_parts_no_blades(void **unused)
+{
+    (void)unused;
+    const struct {
+        uint64_t seed;
+        size_t points;
+    } plant[] = {{67003, 60000}, {67006, 60000}, {67006, 100000}};
+    for (size_t i = 0; i < sizeof plant / sizeof *plant; i++) {
+        virtual_plant made = check(&(plm_scan_options){.scanner = PLM_SCANNER_SPLAT,
+                                                       .points = plant[i].points,
+                                                       .noise = 5e-4,
+                                                       .outliers = 0.01,
+                                                       .seed = plant[i].seed},
+                                   0.9, 0.75);
+        virtual_plant_free(&made);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -109,6 +128,7 @@ int main(void)
         cmocka_unit_test(who_says_rosette_gets_its_leaves),
         cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
         cmocka_unit_test(narrow_blades_begin_where_wide_ones_do),
+        cmocka_unit_test(scatter_between_blurred_petioles_parts_no_blades),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
