@@ -3,30 +3,9 @@
 
 #include "cloud/linear.h"
 #include "segment/scratch.h"
+#include "segment/threads.h"
 
 #include <string.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
-static int thread_count(void)
-{
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
-
-static int thread_number(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
 
 /* A point of the graph and the last ball that met it, which are asked for together. */
 typedef struct node {
@@ -76,7 +55,7 @@ static void ball(const plm_graph *graph, uint32_t centre, float limit, node *at,
 plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    const size_t threads = (size_t)thread_count();
+    const size_t threads = plm_thread_count();
     node *at = plm_scratch_take(&scratch, threads * graph->count, sizeof *at);
     uint32_t *queue = plm_scratch_take(&scratch, threads * graph->count, sizeof *queue);
     if (!scratch.failed) {
@@ -84,8 +63,8 @@ plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape
         const int64_t count = (int64_t)graph->count;
 #pragma omp parallel
         {
-            node *own = at + (size_t)thread_number() * graph->count;
-            uint32_t *own_queue = queue + (size_t)thread_number() * graph->count;
+            node *own = at + plm_thread_number() * graph->count;
+            uint32_t *own_queue = queue + plm_thread_number() * graph->count;
             for (size_t i = 0; i < graph->count; i++) memcpy(own[i].xyz, graph->xyz[i], sizeof own->xyz);
 #pragma omp for schedule(dynamic, 256)
             for (int64_t i = 0; i < count; i++) ball(graph, (uint32_t)i, limit, own, own_queue, &shape[i]);

@@ -4,12 +4,9 @@
 
 #include "cloud/neighbours.h"
 #include "segment/scratch.h"
+#include "segment/threads.h"
 
 #include <math.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 /* Noise over R from which on petioles are blurred: small rosettes have 0.10 to 0.25 (0.5 mm of noise), other seedlings as splats
  * 0.125 at most. */
@@ -30,24 +27,6 @@ enum { SAMPLE = 15000, LEAST = 300, MOST = 800, PROBES = 64 };
 bool plm_has_halo(const plm_scale *scale)
 {
     return scale->noise > BLURRED * scale->radius;
-}
-
-static size_t thread_count(void)
-{
-#ifdef _OPENMP
-    return (size_t)omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
-
-static size_t thread_number(void)
-{
-#ifdef _OPENMP
-    return (size_t)omp_get_thread_num();
-#else
-    return 0;
-#endif
 }
 
 typedef struct halo {
@@ -82,8 +61,8 @@ static plm_status count_points(halo *h, double radius, bool *tell, plm_error *er
     const int64_t count = *tell ? (int64_t)base->count : 0;
 #pragma omp parallel for schedule(dynamic, 256)
     for (int64_t i = 0; i < count; i++) {
-        uint32_t *row = h->row + thread_number() * base->count;
-        float *squared = h->squared + thread_number() * base->count;
+        uint32_t *row = h->row + plm_thread_number() * base->count;
+        float *squared = h->squared + plm_thread_number() * base->count;
         const size_t found = plm_index_ball(index, base->xyz[i], (float)radius, base->count, row, squared);
         double sum = 0;
         for (size_t k = 0; k < found; k++) sum += base->voxels.size[row[k]];
@@ -108,8 +87,8 @@ static plm_status judge(halo *h, double radius, double thin, plm_error *error)
     const int64_t count = (int64_t)base->count;
 #pragma omp parallel for schedule(dynamic, 256)
     for (int64_t i = 0; i < count; i++) {
-        uint32_t *row = h->row + thread_number() * base->count;
-        float *squared = h->squared + thread_number() * base->count;
+        uint32_t *row = h->row + plm_thread_number() * base->count;
+        float *squared = h->squared + plm_thread_number() * base->count;
         const size_t found = plm_index_ball(index, base->xyz[i], (float)radius, h->samples, row, squared);
         for (size_t k = 0; k < found; k++) squared[k] = h->sample_count[row[k]];
         h->keep[i] = !found || h->count[i] >= thin * plm_quantile(squared, found, DENSE);
@@ -122,7 +101,7 @@ plm_status plm_halo_drop(plm_thinned *base, const plm_scale *scale, plm_error *e
 {
     if (base->count < LEAST) return PLM_OK;
     plm_scratch scratch = {.error = error};
-    const size_t count = base->count, threads = thread_count();
+    const size_t count = base->count, threads = plm_thread_count();
     halo h = {.base = base};
     h.count = plm_scratch_take(&scratch, count, sizeof *h.count);
     h.sample = plm_scratch_take(&scratch, count, sizeof *h.sample);
