@@ -71,8 +71,8 @@ static void far_scatter_goes_to_the_nearest_that_stays(void **unused)
     assert_true(10 * far_left <= far);
     assert_true(10 * base.count > 8 * all);
     check_lists(&base);
-    for (size_t i = 0; i < POINTS;
-         i += 97) { /* no other voxel is nearer than its own by more than what voxels are wide */
+    /* No other voxel is nearer than its own by more than what voxels are wide. */
+    for (size_t i = 0; i < POINTS; i += 97) {
         const float *own = base.xyz[base.voxels.owner[i]];
         double nearest = INFINITY;
         for (size_t v = 0; v < base.count; v++)
@@ -152,6 +152,34 @@ static void what_has_no_profile_stays(void **unused)
     }
 }
 
+/* A layer of voxels of many points between two of few: those are half of the voxels, or fewer by one. */
+static void half_of_the_voxels_is_no_halo(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    enum { SIDE = 20, LAYERS = 4, DENSE = 23, SPARSE = 2 };
+    const double cell = 5e-4;
+    for (int fewer = 0; fewer < 2; fewer++) {
+        size_t count = 0;
+        for (int v = 0; v < SIDE * SIDE * LAYERS; v++) {
+            const int layer = v / (SIDE * SIDE), place = v % (SIDE * SIDE);
+            const bool sparse = layer == 0 || layer == LAYERS - 1;
+            for (int k = 0; k < (sparse ? SPARSE : DENSE); k++, count++) {
+                xyz[count][0] = (float)(cell * (place % SIDE + 0.5));
+                xyz[count][1] = (float)(cell * (place / SIDE + 0.5));
+                xyz[count][2] = (float)(cell * ((v == 0 && fewer ? 1 : layer) + 0.5));
+            }
+        }
+        assert_int_equal(count, POINTS);
+        plm_thinned base = thin(cell);
+        assert_int_equal(base.count, SIDE * SIDE * LAYERS - fewer);
+        assert_ok(plm_halo_drop(&base, &(plm_scale){.noise = SIGMA, .spacing = 2e-4, .radius = 3e-3}, &error));
+        assert_int_equal(base.count, fewer ? SIDE * SIDE * LAYERS / 2 : SIDE * SIDE * LAYERS);
+        check_lists(&base);
+        plm_thinned_free(&base);
+    }
+}
+
 static void little_noise_has_no_halo(void **unused)
 {
     (void)unused;
@@ -167,6 +195,7 @@ int main(void)
         cmocka_unit_test(an_even_sheet_stays),
         cmocka_unit_test(all_stay_where_none_is_to),
         cmocka_unit_test(what_has_no_profile_stays),
+        cmocka_unit_test(half_of_the_voxels_is_no_halo),
         cmocka_unit_test(little_noise_has_no_halo),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
