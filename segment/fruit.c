@@ -21,7 +21,7 @@ typedef struct share {
     int32_t number; /* of the leaf without those that are fruit; -1: it is */
 } share;
 
-/* The plant, without its stem's points told apart: a ball needs no more points than its radius asks for. */
+/* Among the plant's points, thinned: a ball needs no more of them than its radius asks for. */
 static plm_status find_balls(const plm_sketch *sketch, plm_ball **ball, size_t *balls, plm_error *error)
 {
     const plm_scale *scale = &sketch->scale;
