@@ -5,7 +5,6 @@
 #include "cloud/random.h"
 #include "segment/balls.h"
 #include "segment/sketch.h"
-#include "support/label_score.h"
 #include "support/virtual_plant.h"
 
 enum { ROWS = 20000 };
@@ -19,26 +18,9 @@ static void a_virtual_tomato_has_its_leaves_and_no_more(void **unused)
         double noise;
     } scan[] = {{PLM_SCANNER_UNIFORM, 0}, {PLM_SCANNER_SPLAT, 5e-4}};
     for (size_t k = 0; k < sizeof scan / sizeof *scan; k++) {
-        plm_error error = {0};
-        label_score score;
         const plm_scan_options options = {
             .scanner = scan[k].scanner, .seed = 71001, .points = 60000, .noise = scan[k].noise};
-        virtual_plant made = virtual_plant_make("tomato_large", 0.3, &options);
-        const plm_cloud *cloud = &made.scan.cloud;
-        assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ,
-                                      &score, &error));
-        size_t fruit = 0, leaf = 0;
-        for (size_t i = 0; i < cloud->count; i++) {
-            fruit += cloud->label[i] == PLM_LABEL_OTHER;
-            leaf += cloud->label[i] == PLM_LABEL_OTHER && made.found.label[i] == PLM_LABEL_LEAF;
-        }
-        print_message("scanner %d: %zu of %zu leaves, F1 %.3f, %zu of the fruit's %zu points in leaves\n",
-                      (int)scan[k].scanner, score.leaves_found, score.leaves, score.f1, leaf, fruit);
-        assert_int_equal(score.leaves, 21);
-        assert_int_equal(score.leaves_found, 21);
-        assert_true(score.f1 >= 0.99);
-        assert_true(leaf < fruit / 10);
-        virtual_plant_free(&made);
+        virtual_plant_assert_leaves("tomato_large", &options, 21);
     }
 }
 

@@ -2,7 +2,6 @@
 #include "support/test.h"
 
 #include "segment/tassel.h"
-#include "support/label_score.h"
 #include "support/virtual_plant.h"
 
 enum { ROWS = 6000 };
@@ -17,27 +16,9 @@ static void a_virtual_maize_has_its_leaves_and_no_more(void **unused)
         double noise;
     } scan[] = {{PLM_SCANNER_UNIFORM, 25000, 0}, {PLM_SCANNER_SPLAT, 40000, 5e-4}};
     for (size_t k = 0; k < sizeof scan / sizeof *scan; k++) {
-        plm_error error = {0};
-        label_score score;
         const plm_scan_options options = {
             .scanner = scan[k].scanner, .seed = 7101, .points = scan[k].points, .noise = scan[k].noise};
-        virtual_plant made = virtual_plant_make("maize_large", 0.3, &options);
-        const plm_cloud *cloud = &made.scan.cloud;
-        assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ,
-                                      &score, &error));
-        size_t tassel = 0, leaf = 0;
-        for (size_t i = 0; i < cloud->count; i++) {
-            const bool is_tassel = cloud->label[i] == PLM_LABEL_OTHER && made.found.label[i] != PLM_LABEL_GROUND;
-            tassel += is_tassel;
-            leaf += is_tassel && made.found.label[i] == PLM_LABEL_LEAF;
-        }
-        print_message("scanner %d: %zu of %zu leaves, F1 %.3f, %zu of the tassel's %zu points in leaves\n",
-                      (int)scan[k].scanner, score.leaves_found, score.leaves, score.f1, leaf, tassel);
-        assert_int_equal(score.leaves, 14);
-        assert_int_equal(score.leaves_found, 14);
-        assert_true(score.f1 >= 0.99);
-        assert_true(leaf < tassel / 10);
-        virtual_plant_free(&made);
+        virtual_plant_assert_leaves("maize_large", &options, 14);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "support/virtual_plant.h"
 
+#include "support/label_score.h"
+
 #include "support/test.h"
 
 virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_scan_options *options)
@@ -35,4 +37,27 @@ void virtual_plant_free(virtual_plant *made)
     plm_segmentation_free(&made->found);
     plm_scan_free(&made->scan);
     plm_virtual_plant_free(&made->plant);
+}
+
+void virtual_plant_assert_leaves(const char *kind, const plm_scan_options *options, size_t leaves)
+{
+    plm_error error = {0};
+    label_score score;
+    virtual_plant made = virtual_plant_make(kind, 0.3, options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
+                                  &error));
+    size_t other = 0, leaf = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        const bool is_other = cloud->label[i] == PLM_LABEL_OTHER && made.found.label[i] != PLM_LABEL_GROUND;
+        other += is_other;
+        leaf += is_other && made.found.label[i] == PLM_LABEL_LEAF;
+    }
+    print_message("%s, scanner %d: %zu of %zu leaves, F1 %.3f, %zu of %zu points of no organ in leaves\n", kind,
+                  (int)options->scanner, score.leaves_found, score.leaves, score.f1, leaf, other);
+    assert_int_equal(score.leaves, leaves);
+    assert_int_equal(score.leaves_found, leaves);
+    assert_true(score.f1 >= 0.99);
+    assert_true(leaf < other / 10);
+    virtual_plant_free(&made);
 }

@@ -18,6 +18,10 @@ virtual_plant virtual_plant_make(const char *kind, double resolution, const plm_
 /** The organs of the same points as found by who says what plant it is. The caller's: plm_segmentation_free. */
 plm_segmentation virtual_plant_as(const virtual_plant *made, plm_habit habit);
 
+/** Fails the test unless all of the leaves are found and no more (leaves: how many there are), F1 is 0.99 and more, and less than a tenth of
+ * the points that are of no organ (tassels, fruit) are in leaves. The plant's resolution is 0.3. */
+void virtual_plant_assert_leaves(const char *kind, const plm_scan_options *options, size_t leaves);
+
 void virtual_plant_free(virtual_plant *made);
 
 #endif
