@@ -9,6 +9,9 @@
 enum { NEIGHBOURS = 8, STEM = 1 }; /* colours: 0 other, 1 stem, 2 leaf + 2 petiole, one more blade */
 static const double SMALL = 0.008; /* share of the organ's points */
 static const double AMID = 0.7;    /* share of the neighbours beside it that are of one organ */
+/* The same of a piece that lies on a stem: each of its points has that many neighbours there, while a part of the organ that
+ * touches a stem or petiole has them along its border alone (0.02 to 0.3 on virtual plants). */
+static const double LARGE = 0.05, CLOSE = 1;
 
 static int32_t colour_of(const plm_sketch *sketch, size_t i)
 {
@@ -40,10 +43,10 @@ typedef struct stray_work {
     plm_graph near;
     int32_t *colour, *component, *winner;
     uint32_t *stack, *whole, *size; /* whole: points of a colour; size: of a component */
-    bool *is_small;
+    uint32_t *votes;                /* of a component */
 } stray_work;
 
-static plm_status find_small(const plm_sketch *sketch, plm_scratch *scratch, stray_work *work)
+static plm_status find_components(const plm_sketch *sketch, plm_scratch *scratch, stray_work *work)
 {
     const size_t count = sketch->working.count;
     work->colour = plm_scratch_take(scratch, count, sizeof *work->colour);
@@ -52,7 +55,7 @@ static plm_status find_small(const plm_sketch *sketch, plm_scratch *scratch, str
     work->stack = plm_scratch_take(scratch, count, sizeof *work->stack);
     work->whole = plm_scratch_take(scratch, 2 * sketch->leaf_count + 2, sizeof *work->whole);
     work->size = plm_scratch_take(scratch, count, sizeof *work->size);
-    work->is_small = plm_scratch_take(scratch, count, sizeof *work->is_small);
+    work->votes = plm_scratch_take(scratch, count, sizeof *work->votes);
     if (scratch->failed) return PLM_E_MEMORY;
     const plm_status status = plm_graph_build((const float(*)[3])sketch->working.xyz, count, NEIGHBOURS, INFINITY,
                                               &work->near, scratch->error);
@@ -60,24 +63,37 @@ static plm_status find_small(const plm_sketch *sketch, plm_scratch *scratch, str
     for (size_t i = 0; i < count; i++) work->whole[work->colour[i] = colour_of(sketch, i)]++;
     const size_t components = plm_graph_components(&work->near, work->colour, work->component, work->stack);
     for (size_t i = 0; i < count; i++) work->size[work->component[i]]++;
-    for (size_t i = 0; i < count; i++)
-        work->is_small[i] = work->size[work->component[i]] < SMALL * (double)work->whole[work->colour[i]];
     for (size_t c = 0; c < components; c++) work->winner[c] = -1;
     return PLM_OK;
 }
 
-/* Votes of the neighbours of small components; gives how many. */
-static size_t gather_votes(const stray_work *work, plm_vote *votes)
+/* Share of its organ's points that a point's component has. */
+static double share_of(const stray_work *work, size_t i)
+{
+    return (double)work->size[work->component[i]] / (double)work->whole[work->colour[i]];
+}
+
+/* Votes of the neighbours of components that are no more than LARGE; gives how many. */
+static size_t gather_votes(stray_work *work, plm_vote *votes)
 {
     const plm_graph *near = &work->near;
     size_t count = 0;
     for (uint32_t i = 0; i < near->count; i++) {
-        if (!work->is_small[i]) continue;
+        if (share_of(work, i) >= LARGE) continue;
         for (uint32_t e = near->first[i]; e < near->first[i + 1]; e++)
-            if (work->colour[near->edge[e]] != work->colour[i])
+            if (work->colour[near->edge[e]] != work->colour[i]) {
                 votes[count++] = (plm_vote){work->component[i], work->colour[near->edge[e]]};
+                work->votes[work->component[i]]++;
+            }
     }
     return count;
+}
+
+static bool is_stray(const stray_work *work, size_t i, int32_t winner)
+{
+    const int32_t component = work->component[i];
+    const bool lies_on_stem = winner == STEM && work->votes[component] >= CLOSE * work->size[component];
+    return share_of(work, i) < (lies_on_stem ? LARGE : SMALL) && yields(work->colour[i], winner);
 }
 
 plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error)
@@ -86,14 +102,14 @@ plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error)
     if (count <= NEIGHBOURS) return PLM_OK;
     stray_work work = {0};
     plm_scratch scratch = {.error = error};
-    plm_status status = find_small(sketch, &scratch, &work);
+    plm_status status = find_components(sketch, &scratch, &work);
     plm_vote *votes = status == PLM_OK ? plm_scratch_take(&scratch, work.near.first[count] + 1, sizeof *votes) : NULL;
     if (status == PLM_OK && !votes) status = PLM_E_MEMORY;
     if (status == PLM_OK) {
         plm_votes_count(votes, gather_votes(&work, votes), AMID, work.winner);
         for (size_t i = 0; i < count; i++) {
             const int32_t winner = work.winner[work.component[i]];
-            if (work.is_small[i] && yields(work.colour[i], winner)) recolour(sketch, i, winner);
+            if (is_stray(&work, i, winner)) recolour(sketch, i, winner);
         }
     }
     plm_graph_free(&work.near);

@@ -68,6 +68,36 @@ static void strays_of_a_blade_on_the_stem_are_stem(void **unused)
     for (size_t i = 0; i < before; i++) assert_int_equal(is_stem[i], i < STEM);
 }
 
+/* A piece as large as what the midrib of a strap leaves behind on the stem that it was drawn along. */
+static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    uint64_t state = 9;
+    plm_sketch sketch = stem_and_blade(&state);
+    const size_t before = sketch.working.count;
+    for (int i = 0; i < 60; i++) {
+        const double turn = PLM_PI * (random_share(&state) - 0.5);
+        add(&sketch, -0.004 * cos(turn), 0.004 * sin(turn), 0.06 + 0.03 * random_share(&state), false, false, 0);
+    }
+    assert_ok(plm_sketch_strays(&sketch, &error));
+    for (size_t i = before; i < sketch.working.count; i++) assert_true(is_stem[i]);
+}
+
+/* So large a part of a blade (0.04 of it) that its border alone touches the stem is blade. */
+static void a_lobe_that_touches_the_stem_stays(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    uint64_t state = 10;
+    plm_sketch sketch = stem_and_blade(&state);
+    const size_t before = sketch.working.count;
+    for (int i = 0; i < 120; i++)
+        add(&sketch, -0.005 - 0.02 * random_share(&state), 0.01 * (random_share(&state) - 0.5), 0.1, false, false, 0);
+    assert_ok(plm_sketch_strays(&sketch, &error));
+    for (size_t i = before; i < sketch.working.count; i++) assert_int_equal(leaf[i], 0);
+}
+
 /* A piece of the blade that stands free, and stem points within the blade, are what they were called. */
 static void what_lies_amid_a_blade_stays(void **unused)
 {
@@ -431,6 +461,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strays_of_a_blade_on_the_stem_are_stem),
+        cmocka_unit_test(a_larger_piece_that_lies_on_the_stem_is_stem),
+        cmocka_unit_test(a_lobe_that_touches_the_stem_stays),
         cmocka_unit_test(what_lies_amid_a_blade_stays),
         cmocka_unit_test(the_rachis_goes_on_among_leaflets),
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
