@@ -260,11 +260,12 @@ static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame
         double place[3];
         flatten(f, leaf->xyz[leaf->point[i]], place);
         if (fabs(place[1]) > SIDE * R || fabs(place[2]) > THICK * R || fabs(place[0]) > REACH * R) continue;
-        uint8_t *label = &out->label[row[leaf->point[i]]];
+        const uint32_t at = row[leaf->point[i]];
         if (place[0] >= junction)
-            *label = PLM_LABEL_LEAF;
+            out->label[at] = PLM_LABEL_LEAF;
         else if (place[0] > old_end - AHEAD * R && fabs(place[1]) < strip && fabs(place[2]) < strip + scale->noise)
-            *label = PLM_LABEL_PETIOLE;
+            out->label[at] = PLM_LABEL_PETIOLE;
+        if (out->leaflet) out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
     }
 }
 
@@ -337,6 +338,18 @@ static void gather(const uint32_t *row, size_t count, const plm_segmentation *ou
     }
 }
 
+/* How many leaves, from the base up, are simple: on a plant of compound leaves those before the first that has leaflets, which tell
+ * themselves where they begin. What has one leaflet higher up is young, and its leaflets are not told apart. */
+static size_t count_simple(const uint32_t *row, size_t count, const plm_segmentation *out)
+{
+    size_t simple = out->leaf_count;
+    for (size_t i = 0; out->leaflet && i < count; i++) {
+        const size_t leaf = (size_t)out->organ[row[i]];
+        if (out->label[row[i]] == PLM_LABEL_LEAF && out->leaflet[row[i]] > 0 && leaf < simple) simple = leaf;
+    }
+    return simple;
+}
+
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                            plm_segmentation *out, plm_error *error)
 {
@@ -353,7 +366,8 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
     size_t number = 0;
     plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
     if (status == PLM_OK) gather(row, count, out, first, point);
-    for (size_t leaf = 0; leaf < leaves && status == PLM_OK; leaf++) {
+    const size_t simple = count_simple(row, count, out);
+    for (size_t leaf = 0; leaf < simple && status == PLM_OK; leaf++) {
         const uint32_t begin = leaf ? first[2 * leaf - 1] : 0, middle = first[2 * leaf], end = first[2 * leaf + 1];
         const leaf_points points = {xyz, point + begin, end - begin, middle - begin, is_rosette};
         status = look(&points, scale, chosen, value, &list[number], error);

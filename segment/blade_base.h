@@ -1,4 +1,4 @@
-/* segment/blade_base.h: where the blade of a simple leaf, or of a rosette's, begins on its petiole, told at all points. Internal. */
+/* segment/blade_base.h: where the blade of a simple leaf (also the first ones of a compound plant), or of a rosette's, begins on its petiole, told at all points. Internal. */
 #ifndef PLANTIMETER_SEGMENT_BLADE_BASE_H
 #define PLANTIMETER_SEGMENT_BLADE_BASE_H
 
@@ -6,7 +6,8 @@
 #include "segment/segment.h"
 
 /** Moves the border between petiole and leaf, in the labels of the plant's points, to where the outline of the blade says
- * that it begins. xyz: count points; row[i]: where point i is in out. Leaves without petiole, and those whose points tell no
+ * that it begins; the leaflet numbers follow. xyz: count points; row[i]: where point i is in out. Of a plant of compound leaves
+ * only those before the first that has leaflets are looked at. Leaves without petiole, and those whose points tell no
  * border, stay as they are; of a rosette also those whose blades are too small for an outline or would begin far
  * towards the tip from where they were thought to, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,

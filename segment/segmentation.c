@@ -182,14 +182,12 @@ static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, s
     return plm_rosette_pieces(xyz, row, count, out, error);
 }
 
-/* Petioles, told at all points. Those of a rosette have no stem that hides their feet; where compound leaves begin their
- * leaflets have told. */
+/* Petioles, told at all points. Those of a rosette have no stem that hides their feet. */
 static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, plm_sketch *sketch,
                                   plm_segmentation *out, plm_error *error)
 {
     plm_status status = PLM_OK;
     if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
-    if (sketch->habit == PLM_HABIT_COMPOUND) return status;
     if (status == PLM_OK) status = find_voxels(xyz, count, &sketch->scale, error);
     if (status != PLM_OK) return status;
     if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))

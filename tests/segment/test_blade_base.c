@@ -460,6 +460,50 @@ static void a_rosettes_wide_blade_is_told_where_its_petiole_is_clear_of_noise(vo
     assert_true(3 * told < wrong_labels(PLM_HABIT_ROSETTE, 0.012, 0.007, 0.0005));
 }
 
+/* Leaves of a compound plant whose petioles end 0.3 R beyond the junction: the first and the last have one leaflet, that between
+ * them two. The first is a simple leaf. */
+static void of_a_compound_plant_the_first_leaves_without_leaflets_are_asked(void **state)
+{
+    (void)state;
+    enum { LEAVES = 3 };
+    static double place[MOST][3];
+    static float xyz[MOST][3];
+    static uint32_t row[MOST];
+    static uint8_t label[MOST];
+    static int32_t organ[MOST], leaflet[MOST];
+    const base_shape round_base = {.name = "a round base", .round = 1.0};
+    size_t count = 0, changed[LEAVES] = {0};
+    for (int leaf = 0; leaf < LEAVES; leaf++) {
+        const size_t end = count + make_leaf(&round_base, 0, 8, 0, 5, place + count);
+        for (; count < end; count++) {
+            const bool petiole = place[count][0] < 0.3 * R && fabs(place[count][1]) < 2 * TUBE;
+            for (int a = 0; a < 3; a++) xyz[count][a] = (float)(place[count][a] + (a == 2 ? 0.1 * leaf : 0));
+            label[count] = petiole ? PLM_LABEL_PETIOLE : PLM_LABEL_LEAF;
+            organ[count] = leaf, row[count] = (uint32_t)count;
+            leaflet[count] = petiole ? -1 : leaf == 1 && place[count][1] > 0;
+        }
+    }
+    static uint8_t before[MOST];
+    memcpy(before, label, sizeof before);
+    plm_error error = {0};
+    plm_segmentation out = {.count = count,
+                            .label = label,
+                            .organ = organ,
+                            .leaflet = leaflet,
+                            .leaf_count = LEAVES,
+                            .habit = PLM_HABIT_COMPOUND};
+    const plm_scale scale = {.radius = R, .stem_radius = TUBE};
+    assert_ok(plm_blade_bases((const float(*)[3])xyz, row, count, &scale, &out, &error));
+    for (size_t i = 0; i < count; i++) changed[organ[i]] += label[i] != before[i];
+    print_message("%zu points changed\n", changed[0]);
+    assert_true(changed[0] > 20);
+    assert_int_equal(changed[1] + changed[2], 0);
+    for (size_t i = 0; i < count; i++) { /* what became blade has the leaflet of the blade, what became petiole none */
+        if (organ[i] != 0) continue;
+        assert_int_equal(leaflet[i], label[i] == PLM_LABEL_LEAF ? 0 : -1);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -476,6 +520,7 @@ int main(void)
         cmocka_unit_test(a_stray_point_makes_no_blade_wide),
         cmocka_unit_test(a_rosettes_small_blades_stay_as_they_are),
         cmocka_unit_test(a_rosettes_wide_blade_is_told_where_its_petiole_is_clear_of_noise),
+        cmocka_unit_test(of_a_compound_plant_the_first_leaves_without_leaflets_are_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

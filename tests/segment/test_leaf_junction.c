@@ -56,8 +56,33 @@ static void narrow_blades_are_no_petioles(void **unused)
     }
 }
 
+/* Of the first two leaves of soybeans, which are simple, points of petioles called blade and the other way round. */
+static void the_simple_leaves_of_a_compound_plant_have_their_outlines_asked(void **unused)
+{
+    (void)unused;
+    size_t wrong = 0, all = 0;
+    for (uint64_t seed = 73003; seed <= 73004; seed++) {
+        const plm_scan_options options = {.scanner = PLM_SCANNER_DOME, .seed = seed, .points = 60000};
+        virtual_plant made = virtual_plant_make("soybean", 0, &options);
+        const plm_cloud *cloud = &made.scan.cloud;
+        assert_int_equal(made.found.habit, PLM_HABIT_COMPOUND);
+        for (size_t i = 0; i < cloud->count; i++) {
+            const uint8_t built = cloud->label[i], found = made.found.label[i];
+            if (cloud->organ[i] > 1 || (built != PLM_LABEL_LEAF && built != PLM_LABEL_PETIOLE)) continue;
+            all++;
+            wrong += found != built && (found == PLM_LABEL_LEAF || found == PLM_LABEL_PETIOLE);
+        }
+        virtual_plant_free(&made);
+    }
+    print_message("%zu points of %zu on the wrong side\n", wrong, all);
+    assert_true(all > 2000 && wrong < 10);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(narrow_blades_are_no_petioles)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(narrow_blades_are_no_petioles),
+        cmocka_unit_test(the_simple_leaves_of_a_compound_plant_have_their_outlines_asked),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
