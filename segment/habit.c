@@ -46,6 +46,9 @@ static const double STRAP_WIDE = 2.2;
  * most; young real tomatoes, whose cotyledons are long: 3.3 to 4.8, but 0.33 at least, and half of their feet at most. */
 static const double STRAP_NOISE = 0.1, STRAP_LONG = 2.7, STRAP_START = 0.3, STRAP_START_TUBELESS = 0.6,
                     STRAP_LEAST = 0.15;
+/* Without noise feet may be slim where the stem is seen thick (with the sheaths about it, and sparse): long blades that begin
+ * nearer than this are straps' then. */
+static const double STRAP_START_CLEAR = 0.2;
 static const double BLADE_ENDS = 0.02; /* quantile of a blade's distances: some points are strays */
 
 static bool is_tubeless(const plm_side_group *group)
@@ -174,16 +177,18 @@ static bool have_thick_feet(const plm_sketch *sketch, const leaf_tally *tally, b
     return tally->strap > least * tally->area;
 }
 
-/* Whether noise is such that feet which tell something do not tell enough. */
-static bool may_hide_feet(const plm_sketch *sketch, const leaf_tally *tally)
+/* Whether feet tell something, if not enough. */
+static bool may_have_thick_feet(const leaf_tally *tally)
 {
-    return sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius && tally->strap > STRAP_LEAST * tally->area;
+    return tally->strap > STRAP_LEAST * tally->area;
 }
 
 /* Whether blades are long and near to the stem, as those of straps. */
-static bool have_long_blades(const leaf_tally *tally, const blade_shape *shape)
+static bool have_long_blades(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape)
 {
-    const double latest = 2 * tally->tubeless > tally->feet ? STRAP_START_TUBELESS : STRAP_START;
+    double latest = STRAP_START_CLEAR;
+    if (sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius)
+        latest = 2 * tally->tubeless > tally->feet ? STRAP_START_TUBELESS : STRAP_START;
     return shape->elongation > STRAP_LONG && shape->start <= latest;
 }
 
@@ -208,15 +213,15 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
         const bool slim = !many && tally.slim_strap + tubes * tally.area > STRAP_WITH_TUBES * tally.area;
         bool strap = slim || have_thick_feet(sketch, &tally, many);
         const bool is_doubtful = strap && !slim && tally.strap <= STRAP_SURE * tally.area;
-        const bool hidden = may_hide_feet(sketch, &tally);
-        if (is_doubtful || (!strap && hidden)) {
+        const bool possible = may_have_thick_feet(&tally);
+        if (is_doubtful || (!strap && possible)) {
             blade_shape shape;
             const plm_status status = find_blade_shape(sketch, groups, &shape, error);
             if (status != PLM_OK) return status;
             const bool wide = shape.elongation > 0 && shape.elongation <= STRAP_WIDE &&
                               tally.strap + tubes * tally.area <= STRAP_SURE * tally.area;
             if (is_doubtful) strap = compound ? shape.start <= ON_PETIOLES : !wide;
-            strap = strap || (hidden && have_long_blades(&tally, &shape));
+            strap = strap || (possible && have_long_blades(sketch, &tally, &shape));
         }
         *habit = strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
     }
