@@ -261,11 +261,13 @@ static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame
         flatten(f, leaf->xyz[leaf->point[i]], place);
         if (fabs(place[1]) > SIDE * R || fabs(place[2]) > THICK * R || fabs(place[0]) > REACH * R) continue;
         const uint32_t at = row[leaf->point[i]];
+        const uint8_t old = out->label[at];
         if (place[0] >= junction)
             out->label[at] = PLM_LABEL_LEAF;
         else if (place[0] > old_end - AHEAD * R && fabs(place[1]) < strip && fabs(place[2]) < strip + scale->noise)
             out->label[at] = PLM_LABEL_PETIOLE;
-        if (out->leaflet) out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
+        if (out->leaflet && out->label[at] != old)
+            out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
     }
 }
 
@@ -339,15 +341,17 @@ static void gather(const uint32_t *row, size_t count, const plm_segmentation *ou
 }
 
 /* How many leaves, from the base up, are simple: on a plant of compound leaves those before the first that has leaflets, which tell
- * themselves where they begin. What has one leaflet higher up is young, and its leaflets are not told apart. */
+ * themselves where they begin. What has one leaflet higher up is young, and its leaflets are not told apart; nor are any where
+ * no leaf has more. */
 static size_t count_simple(const uint32_t *row, size_t count, const plm_segmentation *out)
 {
+    if (!out->leaflet) return out->leaf_count;
     size_t simple = out->leaf_count;
-    for (size_t i = 0; out->leaflet && i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         const size_t leaf = (size_t)out->organ[row[i]];
         if (out->label[row[i]] == PLM_LABEL_LEAF && out->leaflet[row[i]] > 0 && leaf < simple) simple = leaf;
     }
-    return simple;
+    return simple < out->leaf_count ? simple : 0;
 }
 
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,

@@ -68,6 +68,10 @@ static void strays_of_a_blade_on_the_stem_are_stem(void **unused)
     for (size_t i = 0; i < before; i++) assert_int_equal(is_stem[i], i < STEM);
 }
 
+/* The line of that stem. */
+static double stem_node[2][3] = {{0, 0, 0}, {0, 0, 0.2}}, stem_radius[2] = {0.004, 0.004}, stem_along[2] = {0, 0.2};
+static const plm_stem_path stem_line = {.count = 2, .node = stem_node, .radius = stem_radius, .along = stem_along};
+
 /* A piece as large as what the midrib of a strap leaves behind on the stem that it was drawn along. */
 static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
 {
@@ -75,6 +79,7 @@ static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
     plm_error error = {0};
     uint64_t state = 9;
     plm_sketch sketch = stem_and_blade(&state);
+    sketch.stem = stem_line;
     const size_t before = sketch.working.count;
     for (int i = 0; i < 60; i++) {
         const double turn = PLM_PI * (random_share(&state) - 0.5);
@@ -84,16 +89,17 @@ static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
     for (size_t i = before; i < sketch.working.count; i++) assert_true(is_stem[i]);
 }
 
-/* So large a part of a blade (0.04 of it) that its border alone touches the stem is blade. */
-static void a_lobe_that_touches_the_stem_stays(void **unused)
+/* Points of a blade (0.012 of it) whose other neighbours are all the stem's are blade a radius off it. */
+static void a_piece_beside_the_stem_stays(void **unused)
 {
     (void)unused;
     plm_error error = {0};
     uint64_t state = 10;
     plm_sketch sketch = stem_and_blade(&state);
+    sketch.stem = stem_line;
     const size_t before = sketch.working.count;
-    for (int i = 0; i < 120; i++)
-        add(&sketch, -0.005 - 0.02 * random_share(&state), 0.01 * (random_share(&state) - 0.5), 0.1, false, false, 0);
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) add(&sketch, -0.008 - 0.0005 * i, 0.0005 * k, 0.1, false, false, 0);
     assert_ok(plm_sketch_strays(&sketch, &error));
     for (size_t i = before; i < sketch.working.count; i++) assert_int_equal(leaf[i], 0);
 }
@@ -462,7 +468,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strays_of_a_blade_on_the_stem_are_stem),
         cmocka_unit_test(a_larger_piece_that_lies_on_the_stem_is_stem),
-        cmocka_unit_test(a_lobe_that_touches_the_stem_stays),
+        cmocka_unit_test(a_piece_beside_the_stem_stays),
         cmocka_unit_test(what_lies_amid_a_blade_stays),
         cmocka_unit_test(the_rachis_goes_on_among_leaflets),
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
