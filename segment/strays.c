@@ -10,8 +10,8 @@
 enum { NEIGHBOURS = 8, STEM = 1 }; /* colours: 0 other, 1 stem, 2 leaf + 2 petiole, one more blade */
 static const double SMALL = 0.008; /* share of the blade's or petiole's points */
 static const double AMID = 0.7;    /* share of the neighbours beside it that are of one organ */
-/* SMALL of a piece that lies on the stem: half of its points within so many of its radii plus sigma of its line. Medians of such
- * pieces are 1.10 to 1.32 of them; of others amid a stem's points, 1.8 and more of two real maize and a soybean, parts of leaves. */
+/* SMALL of a piece that lies on the stem: half of its points within so many of its radii plus sigma of its line. The medians of
+ * most such pieces are 1.1 to 1.3 of them, those of parts of leaves amid a stem's points (two real maize, a soybean) 1.8 and more. */
 static const double LARGE = 0.05, ON_STEM = 1.35;
 
 static int32_t colour_of(const plm_sketch *sketch, size_t i)
