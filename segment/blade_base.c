@@ -340,10 +340,7 @@ static void gather(const uint32_t *row, size_t count, const plm_segmentation *ou
     }
 }
 
-/* How many leaves, from the base up, are simple: on a plant of compound leaves those before the first that has leaflets, which tell
- * themselves where they begin. What has one leaflet higher up is young, and its leaflets are not told apart; nor are any where
- * no leaf has more. */
-static size_t count_simple(const uint32_t *row, size_t count, const plm_segmentation *out)
+size_t plm_simple_leaves(const uint32_t *row, size_t count, const plm_segmentation *out)
 {
     if (!out->leaflet) return out->leaf_count;
     size_t simple = out->leaf_count;
@@ -370,7 +367,7 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
     size_t number = 0;
     plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
     if (status == PLM_OK) gather(row, count, out, first, point);
-    const size_t simple = count_simple(row, count, out);
+    const size_t simple = plm_simple_leaves(row, count, out);
     for (size_t leaf = 0; leaf < simple && status == PLM_OK; leaf++) {
         const uint32_t begin = leaf ? first[2 * leaf - 1] : 0, middle = first[2 * leaf], end = first[2 * leaf + 1];
         const leaf_points points = {xyz, point + begin, end - begin, middle - begin, is_rosette};

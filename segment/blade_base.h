@@ -1,13 +1,19 @@
-/* segment/blade_base.h: where the blade of a simple leaf (also the first ones of a compound plant), or of a rosette's, begins on its petiole, told at all points. Internal. */
+/* segment/blade_base.h: where the blade of a simple leaf (also the first ones of a compound plant), or of a rosette's, begins
+ * on its petiole, told at all points. Internal. */
 #ifndef PLANTIMETER_SEGMENT_BLADE_BASE_H
 #define PLANTIMETER_SEGMENT_BLADE_BASE_H
 
 #include "segment/scale.h"
 #include "segment/segment.h"
 
+/** How many leaves, from the base up, are simple: on a plant of compound leaves those before the first that has leaflets, which
+ * tell themselves where they begin. What has one leaflet higher up is young, and its leaflets are not told apart; nor are any
+ * where no leaf has more. row: as below. */
+size_t plm_simple_leaves(const uint32_t *row, size_t count, const plm_segmentation *out);
+
 /** Moves the border between petiole and leaf, in the labels of the plant's points, to where the outline of the blade says
- * that it begins; the leaflet numbers follow. xyz: count points; row[i]: where point i is in out. Of a plant of compound leaves
- * only those before the first that has leaflets are looked at. Leaves without petiole, and those whose points tell no
+ * that it begins; the leaflet numbers follow. xyz: count points; row[i]: where point i is in out. Only
+ * plm_simple_leaves are looked at. Leaves without petiole, and those whose points tell no
  * border, stay as they are; of a rosette also those whose blades are too small for an outline or would begin far
  * towards the tip from where they were thought to, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,

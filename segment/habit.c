@@ -46,7 +46,7 @@ static const double STRAP_WIDE = 2.2;
  * most; young real tomatoes, whose cotyledons are long: 3.3 to 4.8, but 0.33 at least, and half of their feet at most. */
 static const double STRAP_NOISE = 0.1, STRAP_LONG = 2.7, STRAP_START = 0.3, STRAP_START_TUBELESS = 0.6,
                     STRAP_LEAST = 0.15;
-/* Without noise feet may be slim where the stem is seen thick (with the sheaths about it, and sparse): long blades that begin
+/* In less noise feet may be slim where the stem is seen thick (with the sheaths about it, and sparse): long blades that begin
  * nearer than this are straps' then. */
 static const double STRAP_START_CLEAR = 0.2;
 static const double BLADE_ENDS = 0.02; /* quantile of a blade's distances: some points are strays */

@@ -188,7 +188,8 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
 {
     plm_status status = PLM_OK;
     if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
-    if (status == PLM_OK) status = find_voxels(xyz, count, &sketch->scale, error);
+    if (status != PLM_OK || !plm_simple_leaves(row, count, out)) return status;
+    status = find_voxels(xyz, count, &sketch->scale, error);
     if (status != PLM_OK) return status;
     if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))
         return rosette_petioles(xyz, row, count, sketch, out, error);

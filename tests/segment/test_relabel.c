@@ -41,7 +41,9 @@ static void add(plm_sketch *sketch, double x, double y, double z, bool stem, boo
 /* A stem of radius 4 mm along z, 200 mm, and a blade that leaves it to the right at the upper end. */
 static plm_sketch stem_and_blade(uint64_t *state)
 {
+    static double node[2][3] = {{0, 0, 0}, {0, 0, 0.2}}, radius[2] = {0.004, 0.004}, along[2] = {0, 0.2};
     plm_sketch sketch = empty_sketch(1);
+    sketch.stem = (plm_stem_path){.count = 2, .node = node, .radius = radius, .along = along};
     for (int i = 0; i < STEM; i++) {
         const double turn = 2 * PLM_PI * random_share(state);
         add(&sketch, 0.004 * cos(turn), 0.004 * sin(turn), 0.2 * random_share(state), true, true, -1);
@@ -68,10 +70,6 @@ static void strays_of_a_blade_on_the_stem_are_stem(void **unused)
     for (size_t i = 0; i < before; i++) assert_int_equal(is_stem[i], i < STEM);
 }
 
-/* The line of that stem. */
-static double stem_node[2][3] = {{0, 0, 0}, {0, 0, 0.2}}, stem_radius[2] = {0.004, 0.004}, stem_along[2] = {0, 0.2};
-static const plm_stem_path stem_line = {.count = 2, .node = stem_node, .radius = stem_radius, .along = stem_along};
-
 /* A piece as large as what the midrib of a strap leaves behind on the stem that it was drawn along. */
 static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
 {
@@ -79,7 +77,6 @@ static void a_larger_piece_that_lies_on_the_stem_is_stem(void **unused)
     plm_error error = {0};
     uint64_t state = 9;
     plm_sketch sketch = stem_and_blade(&state);
-    sketch.stem = stem_line;
     const size_t before = sketch.working.count;
     for (int i = 0; i < 60; i++) {
         const double turn = PLM_PI * (random_share(&state) - 0.5);
@@ -96,7 +93,6 @@ static void a_piece_beside_the_stem_stays(void **unused)
     plm_error error = {0};
     uint64_t state = 10;
     plm_sketch sketch = stem_and_blade(&state);
-    sketch.stem = stem_line;
     const size_t before = sketch.working.count;
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 6; k++) add(&sketch, -0.008 - 0.0005 * i, 0.0005 * k, 0.1, false, false, 0);

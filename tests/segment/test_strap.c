@@ -359,8 +359,8 @@ static void long_blades_at_the_stem_are_straps(void **unused)
     check("maize", PLM_HABIT_STRAP, 34007, &camera, 1, 0.85);
 }
 
-/* Sparse points show the stem of a tall maize thick, so that the feet are slimmer than it without noise, too: the same tells. */
-static void long_blades_at_the_stem_are_straps_without_noise(void **unused)
+/* Sparse points show the stem of a tall maize thick, so that the feet are slimmer than it in little noise, too: the same tells. */
+static void long_blades_at_the_stem_are_straps_in_little_noise(void **unused)
 {
     (void)unused;
     const plm_scan_options scan[] = {
@@ -403,6 +403,6 @@ int main(void)
                                        cmocka_unit_test(round_straps_are_no_branches),
                                        cmocka_unit_test(blades_that_touch_for_long_are_two),
                                        cmocka_unit_test(long_blades_at_the_stem_are_straps),
-                                       cmocka_unit_test(long_blades_at_the_stem_are_straps_without_noise)};
+                                       cmocka_unit_test(long_blades_at_the_stem_are_straps_in_little_noise)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
