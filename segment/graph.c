@@ -2,6 +2,7 @@
 #include "segment/graph.h"
 
 #include "cloud/neighbours.h"
+#include "segment/point_heap.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -131,58 +132,7 @@ size_t plm_graph_components(const plm_graph *graph, const int32_t *colour, int32
     return components;
 }
 
-typedef struct heap {
-    size_t count;
-    uint32_t *point; /* binary heap of points, nearest first; equal distances by point */
-    uint32_t *place; /* of a point in the heap, UINT32_MAX outside */
-    const float *distance;
-} heap;
-
-static bool nearer(const heap *h, uint32_t a, uint32_t b)
-{
-    return h->distance[a] < h->distance[b] || (h->distance[a] == h->distance[b] && a < b);
-}
-
-static void heap_up(heap *h, size_t i)
-{
-    const uint32_t point = h->point[i];
-    while (i > 0 && nearer(h, point, h->point[(i - 1) / 2])) {
-        h->point[i] = h->point[(i - 1) / 2];
-        h->place[h->point[i]] = (uint32_t)i;
-        i = (i - 1) / 2;
-    }
-    h->point[i] = point;
-    h->place[point] = (uint32_t)i;
-}
-
-static uint32_t heap_pop(heap *h)
-{
-    const uint32_t top = h->point[0], last = h->point[--h->count];
-    h->place[top] = UINT32_MAX;
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < h->count; i = child) {
-        if (child + 1 < h->count && nearer(h, h->point[child + 1], h->point[child])) child++;
-        if (!nearer(h, h->point[child], last)) break;
-        h->point[i] = h->point[child];
-        h->place[h->point[i]] = (uint32_t)i;
-    }
-    if (h->count) {
-        h->point[i] = last;
-        h->place[last] = (uint32_t)i;
-    }
-    return top;
-}
-
-static void heap_add(heap *h, uint32_t point)
-{
-    if (h->place[point] == UINT32_MAX) {
-        h->point[h->count] = point;
-        h->place[point] = (uint32_t)h->count++;
-    }
-    heap_up(h, h->place[point]);
-}
-
-static void relax(const plm_graph *graph, const plm_walk *walk, heap *h, uint32_t here)
+static void relax(const plm_graph *graph, const plm_walk *walk, plm_point_heap *heap, uint32_t here)
 {
     for (uint32_t e = graph->first[here]; e < graph->first[here + 1]; e++) {
         const uint32_t next = graph->edge[e];
@@ -194,20 +144,17 @@ static void relax(const plm_graph *graph, const plm_walk *walk, heap *h, uint32_
         walk->distance[next] = reached;
         if (walk->parent) walk->parent[next] = here;
         if (walk->origin) walk->origin[next] = walk->origin[here];
-        heap_add(h, next);
+        plm_heap_add(heap, next);
     }
 }
 
 plm_status plm_graph_walk(const plm_graph *graph, const plm_walk *walk, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    heap h = {.point = plm_scratch_take(&scratch, graph->count, sizeof *h.point),
-              .place = plm_scratch_take(&scratch, graph->count, sizeof *h.place),
-              .distance = walk->distance};
-    if (!scratch.failed) {
+    plm_point_heap heap = {0};
+    if (plm_heap_start(&heap, walk->distance, graph->count, &scratch)) {
         for (size_t i = 0; i < graph->count; i++) {
             walk->distance[i] = INFINITY;
-            h.place[i] = UINT32_MAX;
             if (walk->parent) walk->parent[i] = UINT32_MAX;
             if (walk->origin) walk->origin[i] = -1;
         }
@@ -217,14 +164,14 @@ plm_status plm_graph_walk(const plm_graph *graph, const plm_walk *walk, plm_erro
             if (!(start < walk->distance[source])) continue;
             walk->distance[source] = start;
             if (walk->origin) walk->origin[source] = (int32_t)i;
-            heap_add(&h, source);
+            plm_heap_add(&heap, source);
         }
         size_t reached = 0;
-        while (h.count) {
-            const uint32_t here = heap_pop(&h);
+        while (heap.count) {
+            const uint32_t here = plm_heap_pop(&heap);
             if (walk->order) walk->order[reached] = here;
             reached++;
-            relax(graph, walk, &h, here);
+            relax(graph, walk, &heap, here);
         }
         if (walk->reached) *walk->reached = reached;
     }

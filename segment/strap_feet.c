@@ -16,6 +16,8 @@ static const double CLEAR = 2;           /* nearer to the stem's line, in its ra
 static const double FREE_LEG = 0.1, APART = 0.08;
 /* ... or both begin so near to what is cleared away about the stem (radii), so far apart along it (sizes). */
 static const double ON_STEM = 1, NODES = 0.05;
+/* In R: a leg ends with the nearest point of the other, which may have gone over to it a little before they meet. */
+static const double UNSURE = 0.6;
 
 typedef struct work {
     plm_sketch *sketch;
@@ -120,24 +122,32 @@ static void name_legs(work *w, double *foot, size_t *leaves)
     }
 }
 
+/* How far a point of a leg is from where the leg ends, along the graph. */
+static double before_meeting(const work *w, int32_t leg, size_t i)
+{
+    return (double)w->length[leg] - ((double)w->upside[w->low[leg]] - w->upside[i]);
+}
+
 /* Legs become their leaves; what lies beyond the meeting of legs and near the stem waits to be shared out. */
-static void take_apart(work *w, size_t before, bool *split, double *foot, float *outwards)
+static void take_apart(work *w, size_t before, bool *split, double *foot, bool *beyond)
 {
     plm_sketch *s = w->sketch;
+    const double unsure = UNSURE * s->scale.radius;
     for (size_t k = 0; k < w->legs; k++)
         if (w->leaf[k] >= (int32_t)before) split[s->leaf[w->low[k]]] = true;
     for (size_t k = 0; k < w->legs; k++) /* the leg that keeps the number stands on its own foot, not on the lowest */
         if (w->leaf[k] >= 0 && w->leaf[k] < (int32_t)before && split[w->leaf[k]])
             foot[w->leaf[k]] = w->from_base[w->low[k]];
     for (size_t i = 0; i < s->working.count; i++) {
-        outwards[i] = INFINITY;
+        beyond[i] = false;
         if (s->leaf[i] < 0 || s->is_stem[i] || !split[s->leaf[i]]) continue;
-        if (w->leg[i] < 0) outwards[i] = w->upside[i];
-        s->leaf[i] = w->leg[i] >= 0 ? w->leaf[w->leg[i]] : -1;
+        const int32_t leg = w->leg[i];
+        beyond[i] = isfinite(w->upside[i]) && (leg < 0 || before_meeting(w, leg, i) < unsure);
+        s->leaf[i] = leg >= 0 && !beyond[i] ? w->leaf[leg] : -1;
     }
 }
 
-plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, float *outwards, double *foot, size_t *leaves,
+plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, bool *beyond, double *foot, size_t *leaves,
                           bool *apart, plm_error *error)
 {
     const size_t count = sketch->working.count, before = *leaves;
@@ -165,7 +175,7 @@ plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, float *out
     if (status == PLM_OK) {
         find_ends(&w, before);
         name_legs(&w, foot, leaves);
-        if (*leaves > before) take_apart(&w, before, split, foot, outwards);
+        if (*leaves > before) take_apart(&w, before, split, foot, beyond);
         *apart = *leaves > before;
     }
     plm_scratch_free(&scratch, NULL);

@@ -81,14 +81,14 @@ static size_t base_points(const plm_sketch *sketch, uint32_t *source)
 }
 
 /* The stem is the trunk as far as its line says so; what else is trunk (lobes and folds that the tree swallowed, and what
- * lies below a touch) goes to the leaf whose surface goes on there, or else to the one that is nearest along the graph
- * without crossing the stem. */
-static plm_status mark_stem(plm_sketch *sketch, const float *from_base, const float *order, uint32_t *source,
+ * lies about a touch) goes to the leaf whose surface goes on there, or else to the one that is nearest along the graph
+ * without crossing the stem. beyond: what lies about touches and beyond them; NULL: all lies below. */
+static plm_status mark_stem(plm_sketch *sketch, const float *from_base, const bool *beyond, uint32_t *source,
                             bool *allowed, float *distance, int32_t *origin, plm_error *error)
 {
     const size_t count = sketch->working.count;
     size_t sources = 0;
-    plm_status status = plm_strap_trunk(sketch, order, error);
+    plm_status status = beyond ? plm_strap_beyond(sketch, beyond, error) : plm_strap_trunk(sketch, from_base, error);
     if (status != PLM_OK) return status;
     for (uint32_t i = 0; i < count; i++) {
         allowed[i] = !sketch->is_stem[i] && isfinite(from_base[i]);
@@ -116,7 +116,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     uint32_t *source = plm_scratch_take(&scratch, count, sizeof *source);
     float *distance = plm_scratch_take(&scratch, count, sizeof *distance);
     float *nearest = plm_scratch_take(&scratch, count, sizeof *nearest);
-    float *outwards = plm_scratch_take(&scratch, count, sizeof *outwards);
+    bool *beyond = plm_scratch_take(&scratch, count, sizeof *beyond);
     int32_t *origin = plm_scratch_take(&scratch, count, sizeof *origin);
     bool *allowed = plm_scratch_take(&scratch, count, sizeof *allowed);
     plm_status status = scratch.failed ? PLM_E_MEMORY : shorten_edges(sketch, error);
@@ -141,12 +141,12 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
             const int32_t leaf = sketch->leaf[i];
             if (leaf >= 0) foot[leaf] = fmin(foot[leaf], (double)distance[i]);
         }
-        status = mark_stem(sketch, distance, distance, source, allowed, nearest, origin, error);
+        status = mark_stem(sketch, distance, NULL, source, allowed, nearest, origin, error);
     }
     bool apart = false;
-    if (status == PLM_OK) status = plm_strap_feet(sketch, distance, outwards, foot, leaves, &apart, error);
+    if (status == PLM_OK) status = plm_strap_feet(sketch, distance, beyond, foot, leaves, &apart, error);
     if (status == PLM_OK && apart)
-        status = mark_stem(sketch, distance, outwards, source, allowed, nearest, origin, error);
+        status = mark_stem(sketch, distance, beyond, source, allowed, nearest, origin, error);
     if (status == PLM_OK) status = plm_strap_border(sketch, shape, error);
     if (status == PLM_OK) status = plm_strap_tassel(sketch, distance, foot, leaves, error);
     if (status == PLM_OK)

@@ -1,10 +1,12 @@
 /* segment/strap_trunk.c: where two blades touch, the merge tree ends both, and what lies below on either is trunk. A surface
  * goes on with its own tangent: from the touch down to the stem, each point of the trunk goes to the leaf whose plane
- * passes nearest to it. */
+ * passes nearest to it. Beyond a touch there is no such order: whichever leaf fits some point best goes on there first, so that a
+ * leaf runs along its own surface before another one leaks into it through the touch. */
 #include "segment/strap_trunk.h"
 
 #include "cloud/local_plane.h"
 #include "segment/merge_tree.h"
+#include "segment/point_heap.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -76,7 +78,7 @@ static int find_candidates(work *w, uint32_t centre, candidate *list)
 }
 
 /* How ill a leaf's plane and nearness fit a point. */
-static double misfit(const plm_sketch *s, const candidate *c, uint32_t centre)
+static double misfit_of(const plm_sketch *s, const candidate *c, uint32_t centre)
 {
     const float(*xyz)[3] = (const float(*)[3])s->working.xyz;
     double far = 0;
@@ -84,25 +86,35 @@ static double misfit(const plm_sketch *s, const candidate *c, uint32_t centre)
     return plm_local_plane_distance(xyz, c->point, (size_t)c->count, xyz[centre], NULL) + NEARNESS * far / c->count;
 }
 
-static int32_t choose(const plm_sketch *s, const candidate *list, int count, uint32_t centre)
+/* The leaf that fits a point best, and how ill it does; -1: none is near. */
+static int32_t choose(work *w, uint32_t centre, float *misfit)
 {
+    candidate list[CANDIDATES];
+    const int count = find_candidates(w, centre, list);
     int32_t best = -1;
     double least = INFINITY;
     for (int k = 0; k < count; k++) {
         if (list[k].count < FEWEST) continue;
-        const double value = misfit(s, &list[k], centre);
+        const double value = misfit_of(w->sketch, &list[k], centre);
         if (value < least || (value == least && list[k].leaf < best)) least = value, best = list[k].leaf;
     }
+    *misfit = (float)least;
     return best;
+}
+
+static work work_start(plm_sketch *sketch, plm_scratch *scratch)
+{
+    const size_t count = sketch->working.count;
+    return (work){.sketch = sketch,
+                  .seen = plm_scratch_take(scratch, count, sizeof(uint32_t)),
+                  .queue = plm_scratch_take(scratch, count, sizeof(uint32_t))};
 }
 
 plm_status plm_strap_trunk(plm_sketch *sketch, const float *from_base, plm_error *error)
 {
     const size_t count = sketch->working.count;
     plm_scratch scratch = {.error = error};
-    work w = {.sketch = sketch,
-              .seen = plm_scratch_take(&scratch, count, sizeof *w.seen),
-              .queue = plm_scratch_take(&scratch, count, sizeof *w.queue)};
+    work w = work_start(sketch, &scratch);
     plm_visit *order = plm_scratch_take(&scratch, count, sizeof *order);
     size_t visits = 0;
     for (uint32_t i = 0; !scratch.failed && i < count; i++)
@@ -110,10 +122,56 @@ plm_status plm_strap_trunk(plm_sketch *sketch, const float *from_base, plm_error
             order[visits++] = (plm_visit){from_base[i], i};
     if (visits) qsort(order, visits, sizeof *order, plm_far_first);
     for (size_t k = 0; k < visits; k++) {
-        candidate list[CANDIDATES];
-        const int found = find_candidates(&w, order[k].point, list);
-        sketch->leaf[order[k].point] = choose(sketch, list, found, order[k].point);
+        float misfit;
+        sketch->leaf[order[k].point] = choose(&w, order[k].point, &misfit);
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+}
+
+/* Puts a point that waits where its best leaf says, if that one fits better than what was there. */
+static void offer(work *w, plm_point_heap *heap, float *misfit, int32_t *leaf, uint32_t point)
+{
+    float value;
+    const int32_t best = choose(w, point, &value);
+    if (best < 0 || !(value < misfit[point])) return;
+    misfit[point] = value;
+    leaf[point] = best;
+    plm_heap_add(heap, point);
+}
+
+static bool waits(const plm_sketch *s, const bool *beyond, uint32_t point)
+{
+    return beyond[point] && s->leaf[point] < 0 && !s->is_stem[point];
+}
+
+static bool is_beside_leaf(const plm_sketch *s, uint32_t point)
+{
+    const plm_graph *graph = &s->graph;
+    for (uint32_t e = graph->first[point]; e < graph->first[point + 1]; e++)
+        if (s->leaf[graph->edge[e]] >= 0) return true;
+    return false;
+}
+
+plm_status plm_strap_beyond(plm_sketch *sketch, const bool *beyond, plm_error *error)
+{
+    const plm_graph *graph = &sketch->graph;
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    plm_point_heap heap = {0};
+    work w = work_start(sketch, &scratch);
+    float *misfit = plm_scratch_take(&scratch, count, sizeof *misfit);
+    int32_t *leaf = plm_scratch_take(&scratch, count, sizeof *leaf);
+    const bool started = plm_heap_start(&heap, misfit, count, &scratch);
+    for (uint32_t i = 0; started && i < count; i++) misfit[i] = INFINITY;
+    for (uint32_t i = 0; started && i < count; i++)
+        if (waits(sketch, beyond, i) && is_beside_leaf(sketch, i)) offer(&w, &heap, misfit, leaf, i);
+    while (heap.count) {
+        const uint32_t i = plm_heap_pop(&heap);
+        sketch->leaf[i] = leaf[i];
+        for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++)
+            if (waits(sketch, beyond, graph->edge[e])) offer(&w, &heap, misfit, leaf, graph->edge[e]);
+    }
+    plm_scratch_free(&scratch, NULL);
+    return started ? PLM_OK : PLM_E_MEMORY;
 }

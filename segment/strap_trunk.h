@@ -9,4 +9,7 @@
  * goes on through the point. */
 plm_status plm_strap_trunk(plm_sketch *sketch, const float *from_base, plm_error *error);
 
+/** The same for the points of beyond, which no distance puts in order: a leaf goes on where it fits best of all first. */
+plm_status plm_strap_beyond(plm_sketch *sketch, const bool *beyond, plm_error *error);
+
 #endif

@@ -90,6 +90,20 @@ static void a_tip_on_a_blade_is_a_leaf(void **unused)
     assert_true(splat.worst_leaf >= 0.75);
 }
 
+/* The last hand of one blade lies across another: what is nearer to the base by way of the other one is still its own. */
+static void a_blade_goes_on_beyond_a_touch(void **unused)
+{
+    (void)unused;
+    const label_score clean =
+        check("maize", PLM_HABIT_STRAP, 74005,
+              &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 74005, .points = 60000}, 1, 0.9);
+    assert_true(clean.worst_leaf >= 0.96);
+    const label_score splat =
+        check("maize", PLM_HABIT_STRAP, 74005,
+              &(plm_scan_options){.scanner = PLM_SCANNER_SPLAT, .seed = 74005, .points = 45000, .noise = 5e-4}, 1, 0.9);
+    assert_true(splat.worst_leaf >= 0.93);
+}
+
 /* Two blades rise side by side, and the noise strews points between them. */
 static void noise_joins_no_blades(void **unused)
 {
@@ -382,6 +396,7 @@ int main(void)
                                        cmocka_unit_test(many_blades_a_leaf_are_no_straps),
                                        cmocka_unit_test(blades_that_touch_keep_their_feet),
                                        cmocka_unit_test(a_tip_on_a_blade_is_a_leaf),
+                                       cmocka_unit_test(a_blade_goes_on_beyond_a_touch),
                                        cmocka_unit_test(noise_joins_no_blades),
                                        cmocka_unit_test(the_stem_of_maize_is_its_tube),
                                        cmocka_unit_test(noise_makes_no_petioles_of_straps),
