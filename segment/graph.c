@@ -101,6 +101,20 @@ plm_status plm_graph_add(plm_graph *graph, const plm_link *link, size_t count, p
     return PLM_OK;
 }
 
+void plm_graph_part(plm_graph *graph, const int32_t *colour)
+{
+    uint32_t out = 0, begin = 0;
+    for (size_t i = 0; i < graph->count; i++) {
+        const uint32_t end = graph->first[i + 1];
+        for (uint32_t e = begin; e < end; e++) {
+            const int32_t a = colour[i], b = colour[graph->edge[e]];
+            if (a < 0 || b < 0 || a == b) graph->edge[out++] = graph->edge[e];
+        }
+        graph->first[i + 1] = out;
+        begin = end;
+    }
+}
+
 void plm_graph_free(plm_graph *graph)
 {
     if (!graph) return;

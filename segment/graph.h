@@ -25,6 +25,9 @@ plm_status plm_graph_build(const float (*xyz)[3], size_t count, size_t k, double
 /** Adds links to a graph. */
 plm_status plm_graph_add(plm_graph *graph, const plm_link *link, size_t count, plm_error *error);
 
+/** Takes away the edges between points of two different colours, neither of them negative. */
+void plm_graph_part(plm_graph *graph, const int32_t *colour);
+
 /** Joins components of the graph by shortest links, none longer than longest (Kruskal's rule). cell is the spacing of the
  * points. */
 plm_status plm_graph_join(plm_graph *graph, double cell, double longest, plm_error *error);

@@ -3,6 +3,7 @@
 #include "segment/broken_tubes.h"
 #include "segment/habit.h"
 #include "segment/junction.h"
+#include "segment/leaflet_stalks.h"
 #include "segment/rosette_core.h"
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
@@ -222,6 +223,7 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error)
         if (sketch->habit == PLM_HABIT_COMPOUND && sketch->stem.count) {
             plm_side_groups_free(&groups);
             status = plm_side_groups_find(sketch, LEAFLET_COST, &groups, error);
+            if (status == PLM_OK) status = plm_leaflet_stalks(sketch, LEAFLET_COST, &groups, error);
             if (status == PLM_OK) status = join_leaflets(sketch, &groups, error);
         }
     }

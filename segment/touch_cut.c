@@ -5,6 +5,7 @@
  * narrowest against the lesser blade beside it: without a price it may be the neck of a petiole. */
 #include "segment/touch_cut.h"
 
+#include "segment/min_cut.h"
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
 
@@ -20,7 +21,6 @@ static const double SMALL = 5;     /* least blades: a leaf that is hardly wider 
  * the same at any spacing, as points grow with the square of the width and edges with the width. */
 static const double PRICE = 6;
 static const double WORTH = 0.75; /* of what holds across the present border, the new one's edges and prices at most */
-static const float SATURATED = 1e-6f;
 
 /* Two organs that border on each other within blades. */
 typedef struct organ_border {
@@ -28,156 +28,12 @@ typedef struct organ_border {
     float nearest; /* distance from the trunk at which the border begins */
 } organ_border;
 
-/* The points of two organs and the edges among them, as arcs in both directions. */
+/* The points of two organs. */
 typedef struct net {
-    const plm_sketch *sketch;
+    plm_net flow;
     int32_t *owner;
-    size_t nodes;
-    uint32_t *point;             /* of a node */
-    uint32_t *node;              /* of a point, UINT32_MAX outside of the two organs */
-    uint32_t *first, *to, *twin; /* arcs of a node, where they lead, and the arc back */
-    float *left;                 /* what an arc still holds */
-    float *from, *into;          /* what a node still takes from the source and gives to the sink */
-    int32_t *level;              /* steps from the source, -1 where none leads */
-    uint32_t *next, *queue, *path;
     bool *second; /* of a node: the second organ's beside the best border so far */
 } net;
-
-static plm_status net_start(net *n, plm_scratch *scratch)
-{
-    const size_t count = n->sketch->graph.count, arcs = n->sketch->graph.first[count];
-    n->point = plm_scratch_take(scratch, count, sizeof *n->point);
-    n->node = plm_scratch_take(scratch, count, sizeof *n->node);
-    n->first = plm_scratch_take(scratch, count + 1, sizeof *n->first);
-    n->to = plm_scratch_take(scratch, arcs + 1, sizeof *n->to);
-    n->twin = plm_scratch_take(scratch, arcs + 1, sizeof *n->twin);
-    n->left = plm_scratch_take(scratch, arcs + 1, sizeof *n->left);
-    n->from = plm_scratch_take(scratch, count, sizeof *n->from);
-    n->into = plm_scratch_take(scratch, count, sizeof *n->into);
-    n->level = plm_scratch_take(scratch, count, sizeof *n->level);
-    n->next = plm_scratch_take(scratch, count, sizeof *n->next);
-    n->queue = plm_scratch_take(scratch, count, sizeof *n->queue);
-    n->path = plm_scratch_take(scratch, count, sizeof *n->path);
-    n->second = plm_scratch_take(scratch, count, sizeof *n->second);
-    return scratch->failed ? PLM_E_MEMORY : PLM_OK;
-}
-
-/* Longer edges hold less: those of a touch lead across a gap. */
-static float capacity(const plm_sketch *sketch, uint32_t i, uint32_t j)
-{
-    const double cells = plm_graph_length(&sketch->graph, i, j) / sketch->working.cell;
-    return cells < 1 ? 1 : (float)(1 / (cells * cells));
-}
-
-/* ---- The net of two organs -------------------------------------------------------------------------------------- */
-
-static void find_twins(net *n)
-{
-    for (uint32_t k = 0; k < n->nodes; k++)
-        for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
-            for (uint32_t f = n->first[n->to[e]]; f < n->first[n->to[e] + 1]; f++)
-                if (n->to[f] == k) n->twin[e] = f;
-}
-
-static void net_of(net *n, const organ_border *border)
-{
-    const plm_graph *graph = &n->sketch->graph;
-    uint32_t arcs = 0;
-    n->nodes = 0;
-    for (uint32_t i = 0; i < graph->count; i++) {
-        n->node[i] = UINT32_MAX;
-        if (n->owner[i] < 0 || (n->owner[i] != border->organ[0] && n->owner[i] != border->organ[1])) continue;
-        n->node[i] = (uint32_t)n->nodes;
-        n->point[n->nodes++] = i;
-    }
-    for (size_t k = 0; k < n->nodes; k++) {
-        const uint32_t i = n->point[k];
-        n->first[k] = arcs;
-        for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++)
-            if (n->node[graph->edge[e]] != UINT32_MAX) n->to[arcs++] = n->node[graph->edge[e]];
-    }
-    n->first[n->nodes] = arcs;
-    find_twins(n);
-}
-
-static void fill(net *n)
-{
-    for (size_t k = 0; k < n->nodes; k++)
-        for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
-            n->left[e] = capacity(n->sketch, n->point[k], n->point[n->to[e]]);
-}
-
-/* ---- Maximum flow ----------------------------------------------------------------------------------------------- */
-
-/* Steps from the source along arcs that hold; whether one reaches the sink. */
-static bool find_levels(net *n)
-{
-    size_t head = 0, tail = 0;
-    bool reached = false;
-    for (uint32_t k = 0; k < n->nodes; k++) {
-        n->level[k] = n->from[k] > SATURATED ? 0 : -1;
-        n->next[k] = n->first[k];
-        if (n->level[k] == 0) n->queue[tail++] = k;
-    }
-    while (head < tail) {
-        const uint32_t k = n->queue[head++];
-        reached = reached || n->into[k] > SATURATED;
-        if (isinf(n->into[k])) continue;
-        for (uint32_t e = n->first[k]; e < n->first[k + 1]; e++)
-            if (n->level[n->to[e]] < 0 && n->left[e] > SATURATED) {
-                n->level[n->to[e]] = n->level[k] + 1;
-                n->queue[tail++] = n->to[e];
-            }
-    }
-    return reached;
-}
-
-/* A way from a node of the source to the sink, a level a step. */
-static bool find_way(net *n, uint32_t start, size_t *length)
-{
-    size_t depth = 0;
-    uint32_t here = start;
-    while (!(n->into[here] > SATURATED)) {
-        uint32_t *e = &n->next[here];
-        while (*e < n->first[here + 1] && !(n->left[*e] > SATURATED && n->level[n->to[*e]] == n->level[here] + 1))
-            (*e)++;
-        if (*e < n->first[here + 1]) {
-            n->path[depth++] = *e;
-            here = n->to[*e];
-        } else {
-            if (!depth) return false;
-            here = n->to[n->twin[n->path[--depth]]];
-            n->next[here]++;
-        }
-    }
-    *length = depth;
-    return true;
-}
-
-static double push(net *n, uint32_t start, size_t depth)
-{
-    const uint32_t end = depth ? n->to[n->path[depth - 1]] : start;
-    float least = fminf(n->from[start], n->into[end]);
-    for (size_t k = 0; k < depth; k++) least = fminf(least, n->left[n->path[k]]);
-    for (size_t k = 0; k < depth; k++) {
-        n->left[n->path[k]] -= least;
-        n->left[n->twin[n->path[k]]] += least;
-    }
-    n->from[start] -= least;
-    n->into[end] -= least;
-    return least;
-}
-
-/* The maximum flow, or something above limit. Where it is not above, level[] is not negative
- * then on the source's side of the minimum cut. */
-static double find_flow(net *n, double limit)
-{
-    double flow = 0;
-    while (flow <= limit && find_levels(n))
-        for (uint32_t k = 0; k < n->nodes; k++)
-            for (size_t depth; n->from[k] > SATURATED && find_way(n, k, &depth);) flow += push(n, k, depth);
-    return flow;
-}
 
 /* ---- Borders ---------------------------------------------------------------------------------------------------- */
 
@@ -197,12 +53,12 @@ static bool is_blade(const plm_sketch *sketch, const int32_t *owner, uint32_t i)
 /* Every pair of organs that are neighbours within blades, as they are before any border is moved; list: room for an entry an edge. */
 static size_t find_borders(const net *n, const float *distance, organ_border *list)
 {
-    const plm_graph *graph = &n->sketch->graph;
+    const plm_graph *graph = &n->flow.sketch->graph;
     size_t edges = 0, borders = 0;
     for (uint32_t i = 0; i < graph->count; i++)
-        for (uint32_t e = graph->first[i]; e < graph->first[i + 1] && is_blade(n->sketch, n->owner, i); e++) {
+        for (uint32_t e = graph->first[i]; e < graph->first[i + 1] && is_blade(n->flow.sketch, n->owner, i); e++) {
             const uint32_t j = graph->edge[e];
-            if (n->owner[j] > n->owner[i] && is_blade(n->sketch, n->owner, j))
+            if (n->owner[j] > n->owner[i] && is_blade(n->flow.sketch, n->owner, j))
                 list[edges++] = (organ_border){{n->owner[i], n->owner[j]}, distance[i]};
         }
     qsort(list, edges, sizeof *list, by_organs);
@@ -223,19 +79,20 @@ typedef struct cut {
 
 static bool is_second(const net *n, const organ_border *border, size_t k)
 {
-    return n->owner[n->point[k]] == border->organ[1];
+    return n->owner[n->flow.point[k]] == border->organ[1];
 }
 
 /* The present border. */
 static cut present_cut(const net *n, const organ_border *border)
 {
     cut c = {0};
-    for (size_t k = 0; k < n->nodes; k++) {
-        const uint32_t i = n->point[k];
+    for (size_t k = 0; k < n->flow.nodes; k++) {
+        const uint32_t i = n->flow.point[k];
         const bool second = is_second(n, border, k);
-        c.blade[second] += !n->sketch->is_tube[i];
-        for (uint32_t e = n->first[k]; e < n->first[k + 1] && !second; e++)
-            if (is_second(n, border, n->to[e])) c.holds += capacity(n->sketch, i, n->point[n->to[e]]);
+        c.blade[second] += !n->flow.sketch->is_tube[i];
+        for (uint32_t e = n->flow.first[k]; e < n->flow.first[k + 1] && !second; e++)
+            if (is_second(n, border, n->flow.to[e]))
+                c.holds += plm_net_capacity(n->flow.sketch, i, n->flow.point[n->flow.to[e]]);
     }
     return c;
 }
@@ -244,13 +101,14 @@ static cut present_cut(const net *n, const organ_border *border)
 static cut found_cut(const net *n, const organ_border *border)
 {
     cut c = {0};
-    for (size_t k = 0; k < n->nodes; k++) {
-        const uint32_t i = n->point[k];
-        const bool second = n->level[k] < 0;
-        c.blade[second] += !n->sketch->is_tube[i];
+    for (size_t k = 0; k < n->flow.nodes; k++) {
+        const uint32_t i = n->flow.point[k];
+        const bool second = n->flow.level[k] < 0;
+        c.blade[second] += !n->flow.sketch->is_tube[i];
         c.moves = c.moves || second != is_second(n, border, k);
-        for (uint32_t e = n->first[k]; e < n->first[k + 1] && !second; e++)
-            if (n->level[n->to[e]] < 0) c.holds += capacity(n->sketch, i, n->point[n->to[e]]);
+        for (uint32_t e = n->flow.first[k]; e < n->flow.first[k + 1] && !second; e++)
+            if (n->flow.level[n->flow.to[e]] < 0)
+                c.holds += plm_net_capacity(n->flow.sketch, i, n->flow.point[n->flow.to[e]]);
     }
     return c;
 }
@@ -262,16 +120,15 @@ static bool find_cut(net *n, const organ_border *border, const float *distance, 
                      cut *found)
 {
     bool rooted[2] = {isinf(price[0]), isinf(price[1])};
-    for (size_t k = 0; k < n->nodes; k++) {
+    for (size_t k = 0; k < n->flow.nodes; k++) {
         const bool second = is_second(n, border, k);
-        const bool is_root = distance[n->point[k]] < ROOT * border->nearest;
+        const bool is_root = distance[n->flow.point[k]] < ROOT * border->nearest;
         rooted[second] = rooted[second] || is_root;
-        n->from[k] = second ? 0 : is_root ? INFINITY : (float)price[0];
-        n->into[k] = !second ? 0 : is_root ? INFINITY : (float)price[1];
+        n->flow.from[k] = second ? 0 : is_root ? INFINITY : (float)price[0];
+        n->flow.into[k] = !second ? 0 : is_root ? INFINITY : (float)price[1];
     }
     if (!rooted[0] || !rooted[1]) return false;
-    fill(n);
-    if (find_flow(n, limit) > limit) return false;
+    if (plm_net_flow(&n->flow, limit) > limit) return false;
     *found = found_cut(n, border);
     return true;
 }
@@ -299,7 +156,7 @@ static double narrowness(const cut *c)
 
 static void keep_sides(net *n)
 {
-    for (size_t k = 0; k < n->nodes; k++) n->second[k] = n->level[k] < 0;
+    for (size_t k = 0; k < n->flow.nodes; k++) n->second[k] = n->flow.level[k] < 0;
 }
 
 /* Between compound leaves the neck may be a rachis, with leaflets on both sides of it. So the border at one price is taken, if it saves
@@ -310,7 +167,7 @@ static bool find_leaflets(net *n, const organ_border *border, const float *dista
     cut found;
     if (!find_cut(n, border, distance, (double[2]){price, price}, WORTH * present->holds, &found)) return false;
     keep_sides(n);
-    return keeps_blades(n->sketch, present, &found);
+    return keeps_blades(n->flow.sketch, present, &found);
 }
 
 /* The narrowest border of those at some prices and the necks of both organs (one that gives at no price, while the other keeps all).
@@ -319,8 +176,8 @@ static bool find_touch(net *n, const organ_border *border, const float *distance
 {
     const double offer[][2] = {{0, INFINITY}, {INFINITY, 0}, {PRICE, PRICE}, {PRICE / 4, PRICE / 4}};
     const double limit = GAIN * present->holds;
-    const bool may_lose = !n->sketch->stem.count; /* on a stem a petiole bears a leaf */
-    const bool is_small = (double)lesser_blade(present) < SMALL * plm_blade_least_points(n->sketch);
+    const bool may_lose = !n->flow.sketch->stem.count; /* on a stem a petiole bears a leaf */
+    const bool is_small = (double)lesser_blade(present) < SMALL * plm_blade_least_points(n->flow.sketch);
     double narrowest = GAIN * narrowness(present), least = INFINITY;
     bool is_touch = false;
     for (size_t k = 0; k < sizeof offer / sizeof *offer; k++) {
@@ -329,7 +186,7 @@ static bool find_touch(net *n, const organ_border *border, const float *distance
         cut found;
         if (!find_cut(n, border, distance, price, is_neck ? limit : INFINITY, &found)) continue;
         if (!found.moves || found.holds > limit) continue;
-        if (keeps_blades(n->sketch, present, &found)) {
+        if (keeps_blades(n->flow.sketch, present, &found)) {
             if (!(narrowness(&found) < narrowest)) continue;
             narrowest = narrowness(&found);
             is_touch = true;
@@ -345,21 +202,24 @@ static bool find_touch(net *n, const organ_border *border, const float *distance
 
 static void move_border(net *n, const organ_border *border, bool leaflets, const float *distance)
 {
-    net_of(n, border);
+    plm_net_of(&n->flow, n->owner, border->organ[0], border->organ[1]);
     const cut present = present_cut(n, border);
     if (present.holds < LEAST_CUT) return;
     if (!(leaflets ? find_leaflets : find_touch)(n, border, distance, &present)) return;
-    for (size_t k = 0; k < n->nodes; k++) n->owner[n->point[k]] = border->organ[n->second[k]];
+    for (size_t k = 0; k < n->flow.nodes; k++) n->owner[n->flow.point[k]] = border->organ[n->second[k]];
 }
 
 plm_status plm_touch_cut(const plm_sketch *sketch, bool leaflets, const float *distance, int32_t *owner,
                          plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    net n = {.sketch = sketch, .owner = owner};
+    net n = {.flow = {.sketch = sketch}, .owner = owner};
     organ_border *list = plm_scratch_take(&scratch, sketch->graph.first[sketch->graph.count] / 2 + 1, sizeof *list);
     const size_t borders = list ? find_borders(&n, distance, list) : 0;
-    const plm_status status = borders ? net_start(&n, &scratch) : list ? PLM_OK : PLM_E_MEMORY;
+    plm_status status = list ? PLM_OK : PLM_E_MEMORY;
+    if (borders) status = plm_net_start(&n.flow, sketch, &scratch);
+    if (borders) n.second = plm_scratch_take(&scratch, sketch->graph.count, sizeof *n.second);
+    if (scratch.failed) status = PLM_E_MEMORY;
     for (size_t b = 0; status == PLM_OK && b < borders; b++) move_border(&n, &list[b], leaflets, distance);
     plm_scratch_free(&scratch, NULL);
     return status;
