@@ -21,16 +21,17 @@ plm_piece_shape plm_piece_shape_of(const double (*xyz)[3], size_t count)
             for (int b = a; b < 3; b++) moment[m++] += d[a] * d[b];
     }
     plm_eigen3(moment, value, shape.axis);
+    shape.across = sqrt(fmax(value[1], 0) / (double)count);
     return shape;
 }
 
-/* Direction within the piece's plane from a place to its middle. */
-static void way_to_middle(const plm_piece_shape *shape, const double place[3], double way[3])
+/* Direction within the piece's plane from a place to its middle; gives how far that is. */
+static double way_to_middle(const plm_piece_shape *shape, const double place[3], double way[3])
 {
     for (int a = 0; a < 3; a++) way[a] = shape->middle[a] - place[a];
     const double off = plm_dot(way, shape->axis[2]);
     for (int a = 0; a < 3; a++) way[a] -= off * shape->axis[2][a];
-    plm_normalise(way);
+    return plm_normalise(way);
 }
 
 bool plm_hangs_at(const double (*xyz)[3], size_t count, const plm_piece_shape *shape, const double place[3])
@@ -56,6 +57,6 @@ bool plm_hangs_at(const double (*xyz)[3], size_t count, const plm_piece_shape *s
 bool plm_is_at_side(const plm_piece_shape *shape, const double place[3])
 {
     double way[3];
-    way_to_middle(shape, place, way);
-    return fabs(plm_dot(way, shape->axis[0])) < ASIDE;
+    const double off = way_to_middle(shape, place, way);
+    return off > shape->across && fabs(plm_dot(way, shape->axis[0])) < ASIDE;
 }

@@ -9,6 +9,7 @@
 typedef struct plm_piece_shape {
     double middle[3];
     double axis[3][3]; /**< longest first, the last is the normal */
+    double across;     /**< SD along the second */
 } plm_piece_shape;
 
 plm_piece_shape plm_piece_shape_of(const double (*xyz)[3], size_t count);
@@ -16,7 +17,7 @@ plm_piece_shape plm_piece_shape_of(const double (*xyz)[3], size_t count);
 /** Whether a piece is a leaflet whose base lies at a place: it runs away from there, longer than wide, and nothing of it is behind. */
 bool plm_hangs_at(const double (*xyz)[3], size_t count, const plm_piece_shape *shape, const double place[3]);
 
-/** Whether a place is at a side of a piece: the way from there to its middle is not its longer one. */
+/** Whether a place is at a side of a piece: off its middle, and the way from there to the middle is not its longer one. */
 bool plm_is_at_side(const plm_piece_shape *shape, const double place[3]);
 
 #endif

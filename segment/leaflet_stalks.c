@@ -10,12 +10,13 @@
 #include "segment/scratch.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double GAP = 1;     /* in R: the longest stalk that is not seen */
 static const double APART = 1.5; /* in R: places of one blade that are nearer to each other are one */
 /* What is cut off holds all points so near to the base (in R), and each of its points has a price (over the root of the blade's, in
- * edges of a cell): so pieces from a small one up to all that the blade's leaf does not hold are tried. */
+ * edges of a cell): the higher it is, the smaller pieces are tried. */
 static const double WITHIN[] = {0.5, 1, 1.5, 2, 3, 4};
 static const double PRICE[] = {0, 0.15, 0.25, 0.4, 0.6, 0.8, 1.1, 1.5, 2, 3};
 enum {
@@ -47,9 +48,9 @@ typedef struct work {
     double (*piece)[3];
     int32_t *colour, *component;
     uint32_t *stack;
-    bool *best; /* of a node: the piece that was found */
-    int32_t *
-        part; /* of each point, for plm_graph_part: the number of its leaflet, 0 in what that was joined with, else -1 */
+    bool *allowed; /* of a point: it is of the blade in work */
+    bool *best;    /* of a node: it is in the piece that was found */
+    int32_t *part; /* of each point: the number of the leaflet that is parted off, 0 in leaves that lost one, else -1 */
 } work;
 
 /* ---- Where blades lie near tubes -------------------------------------------------------------------------------- */
@@ -80,7 +81,7 @@ static void propose(work *w, uint32_t tube, uint32_t base)
     if (w->stalks < MOST) w->stalk[w->stalks++] = found;
 }
 
-/* The nearest point of each blade of another leaf about a tube's point; those that it is joined with touch it. */
+/* The nearest point of each blade of another leaf about a tube's point, if the two are not joined. */
 static void propose_about(work *w, const plm_index *index, uint32_t tube, uint32_t *row, float *squared)
 {
     const plm_sketch *s = w->sketch;
@@ -157,8 +158,8 @@ static plm_status find_ways(work *w, double blade_cost, plm_error *error)
 
 static plm_status walk_from_base(work *w, const stalk *k, plm_error *error)
 {
-    for (size_t i = 0; i < w->sketch->working.count; i++) w->best[i] = w->groups->blade[i] == k->blade;
-    const plm_walk walk = {.source = &k->base, .source_count = 1, .allowed = w->best, .distance = w->from_base};
+    for (size_t i = 0; i < w->sketch->working.count; i++) w->allowed[i] = w->groups->blade[i] == k->blade;
+    const plm_walk walk = {.source = &k->base, .source_count = 1, .allowed = w->allowed, .distance = w->from_base};
     return plm_graph_walk(&w->sketch->graph, &walk, error);
 }
 
@@ -171,22 +172,28 @@ static bool is_held(const work *w, uint32_t i)
     return up != UINT32_MAX && s->is_tube[up] && s->group[up] == s->group[i];
 }
 
-/* Writes inside: the cheapest piece that holds what is within reach of the base and nothing that the leaf holds. false: there is none. */
-static bool cut_piece(work *w, double price, double reach)
+/* Whether a piece that holds what is within reach of the base can be cut off: nothing that the leaf holds is there, but elsewhere. */
+static bool can_cut(const work *w, double reach)
+{
+    bool any = false;
+    for (size_t k = 0; k < w->net.nodes; k++) {
+        if (!is_held(w, w->net.point[k])) continue;
+        if ((double)w->from_base[w->net.point[k]] <= reach) return false;
+        any = true;
+    }
+    return any;
+}
+
+/* Writes inside: the cheapest such piece without what the leaf holds, where each point of it has a price. */
+static void cut_piece(work *w, double price, double reach)
 {
     plm_net *n = &w->net;
-    bool any = false;
     for (size_t k = 0; k < n->nodes; k++) {
-        const bool held = is_held(w, n->point[k]), near = (double)w->from_base[n->point[k]] <= reach;
-        if (held && near) return false;
-        n->from[k] = near ? INFINITY : 0;
-        n->into[k] = held ? INFINITY : (float)price;
-        any = any || held;
+        n->from[k] = (double)w->from_base[n->point[k]] <= reach ? INFINITY : 0;
+        n->into[k] = is_held(w, n->point[k]) ? INFINITY : (float)price;
     }
-    if (!any) return false;
     plm_net_flow(n, INFINITY);
     for (size_t k = 0; k < n->nodes; k++) w->inside[k] = n->level[k] >= 0;
-    return true;
 }
 
 static bool is_inside(const work *w, uint32_t point)
@@ -268,9 +275,11 @@ static plm_status find_leaflet(work *w, const stalk *k, bool *found, plm_error *
     for (size_t j = 0; j < w->net.nodes; j++) w->inside[j] = true;
     weigh_piece(w, k, &narrowest);
     const double root = sqrt((double)w->net.nodes);
-    for (int r = 0; r < REACHES; r++)
-        for (int p = 0; p < PRICES; p++)
-            if (cut_piece(w, PRICE[p] / root, WITHIN[r] * R)) weigh_piece(w, k, &narrowest);
+    for (int r = 0; r < REACHES && can_cut(w, WITHIN[r] * R); r++)
+        for (int p = 0; p < PRICES; p++) {
+            cut_piece(w, PRICE[p] / root, WITHIN[r] * R);
+            weigh_piece(w, k, &narrowest);
+        }
     *found = isfinite(narrowest);
     return PLM_OK;
 }
@@ -287,13 +296,22 @@ static void part_off(work *w, const stalk *k, int32_t number)
         if (w->best[j]) w->part[w->net.point[j]] = number;
 }
 
+static int nearest_first(const void *a, const void *b)
+{
+    const stalk *p = a, *q = b;
+    if (p->gap != q->gap) return p->gap < q->gap ? -1 : 1;
+    return (p->tube > q->tube) - (p->tube < q->tube);
+}
+
+/* One leaflet a leaf: what two cuts together leave of it is not asked. */
 static plm_status find_stalks(work *w, plm_link *link, size_t *links, plm_error *error)
 {
     plm_status status = PLM_OK;
+    if (w->stalks) qsort(w->stalk, w->stalks, sizeof *w->stalk, nearest_first);
     for (size_t k = 0; status == PLM_OK && k < w->stalks; k++) {
         const stalk *here = &w->stalk[k];
         bool found = false;
-        if (w->part[here->base] > 0) continue; /* of a leaflet that was found already */
+        if (w->part[here->base] >= 0) continue; /* its leaf has lost one already */
         status = find_leaflet(w, here, &found, error);
         if (status != PLM_OK || !found) continue;
         link[(*links)++] = (plm_link){here->tube, here->base, (float)here->gap};
@@ -313,6 +331,7 @@ static plm_status work_start(work *w, plm_scratch *scratch)
     w->colour = plm_scratch_take(scratch, count, sizeof *w->colour);
     w->component = plm_scratch_take(scratch, count, sizeof *w->component);
     w->stack = plm_scratch_take(scratch, count, sizeof *w->stack);
+    w->allowed = plm_scratch_take(scratch, count, sizeof *w->allowed);
     w->best = plm_scratch_take(scratch, count, sizeof *w->best);
     w->part = plm_scratch_take(scratch, count, sizeof *w->part);
     for (size_t i = 0; !scratch->failed && i < count; i++) w->part[i] = -1;

@@ -23,7 +23,8 @@ typedef struct plm_sketch {
     plm_scale scale;
     plm_thinned base;    /**< up to the point budget; working is thinned from it */
     plm_thinned working; /**< one point each max(R / 12, spacing) */
-    plm_graph graph;     /**< over working, in one piece where gaps are below 2.5 R; broken petioles are linked later */
+    plm_graph
+        graph; /**< over working, in one piece where gaps are below 2.5 R; broken petioles and stalks are linked later, and what touches there parted */
     plm_tube_point *point;
     float *tube; /**< probability of being tube, smoothed */
     bool *is_tube;

@@ -128,7 +128,7 @@ static double before_meeting(const work *w, int32_t leg, size_t i)
     return (double)w->length[leg] - ((double)w->upside[w->low[leg]] - w->upside[i]);
 }
 
-/* Legs become their leaves; what lies beyond the meeting of legs and near the stem waits to be shared out. */
+/* Legs become their leaves; what lies about the meeting of legs, beyond it and near the stem waits to be shared out. */
 static void take_apart(work *w, size_t before, bool *split, double *foot, bool *beyond)
 {
     plm_sketch *s = w->sketch;
@@ -142,7 +142,8 @@ static void take_apart(work *w, size_t before, bool *split, double *foot, bool *
         beyond[i] = false;
         if (s->leaf[i] < 0 || s->is_stem[i] || !split[s->leaf[i]]) continue;
         const int32_t leg = w->leg[i];
-        beyond[i] = isfinite(w->upside[i]) && (leg < 0 || before_meeting(w, leg, i) < unsure);
+        beyond[i] = isfinite(w->upside[i]) &&
+                    (leg < 0 || before_meeting(w, leg, i) < fmin(unsure, 0.5 * (double)w->length[leg]));
         s->leaf[i] = leg >= 0 && !beyond[i] ? w->leaf[leg] : -1;
     }
 }

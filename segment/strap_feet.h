@@ -6,7 +6,7 @@
 
 /** A leaf that stands on several feet, with long legs up to where they meet, is as many leaves: writes leaf of the legs,
  * -1 to what lies beyond their meeting and near the stem. from_base: distance of each point along the graph; beyond:
- * out, the points about a meeting and beyond it, for plm_strap_beyond. leaves: in and out, their number; foot: one a leaf,
+ * out where any was taken apart, the points about a meeting and beyond it, for plm_strap_beyond. leaves: in and out, their number; foot: one a leaf,
  * with room for PLM_STRAP_FEET_MOST more; out, for each leaf that is new, the distance of its foot. Gives whether any was
  * taken apart. */
 plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, bool *beyond, double *foot, size_t *leaves,

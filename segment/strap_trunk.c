@@ -129,7 +129,7 @@ plm_status plm_strap_trunk(plm_sketch *sketch, const float *from_base, plm_error
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-/* Puts a point that waits where its best leaf says, if that one fits better than what was there. */
+/* Notes the leaf that fits a point best, where it fits better than the one that was noted. */
 static void offer(work *w, plm_point_heap *heap, float *misfit, int32_t *leaf, uint32_t point)
 {
     float value;

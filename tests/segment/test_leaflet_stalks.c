@@ -31,16 +31,57 @@ static void add_patch(plm_sketch *sketch, double x, double y, double wide, doubl
         for (int j = 0; j < rows; j++) add(sketch, 1e-3 * x + k * STEP, 1e-3 * y + j * STEP, tube, organ);
 }
 
-/* Whether a rectangle from (0, 0) along x hangs at a place. */
-static bool hangs(double wide, double high, double x, double y)
+/* A rectangle from (0, 0) along x. */
+static size_t fill(double wide, double high, double (*piece)[3])
 {
-    static double piece[ROWS][3];
-    const double place[3] = {x, y, 0};
     size_t count = 0;
     for (double u = 0; u < wide; u += 0.25)
-        for (double v = -high / 2; v < high / 2; v += 0.25, count++) piece[count][0] = u, piece[count][1] = v;
-    const plm_piece_shape shape = plm_piece_shape_of((const double(*)[3])piece, count);
-    return plm_hangs_at((const double(*)[3])piece, count, &shape, place);
+        for (double v = -high / 2; v < high / 2; v += 0.25, count++)
+            piece[count][0] = u, piece[count][1] = v, piece[count][2] = 0;
+    assert_true(count <= ROWS);
+    return count;
+}
+
+static double rectangle[ROWS][3];
+
+static bool hangs(double wide, double high, double x, double y)
+{
+    const size_t count = fill(wide, high, rectangle);
+    const plm_piece_shape shape = plm_piece_shape_of((const double(*)[3])rectangle, count);
+    return plm_hangs_at((const double(*)[3])rectangle, count, &shape, (double[3]){x, y, 0});
+}
+
+static bool is_at_side(double wide, double high, double x, double y)
+{
+    const size_t count = fill(wide, high, rectangle);
+    const plm_piece_shape shape = plm_piece_shape_of((const double(*)[3])rectangle, count);
+    return plm_is_at_side(&shape, (double[3]){x, y, 0});
+}
+
+static void a_touch_at_a_side_is_at_no_end(void **unused)
+{
+    (void)unused;
+    assert_true(is_at_side(12, 6, 6, 3));
+    assert_true(is_at_side(12, 6, 8, -3));
+    assert_false(is_at_side(12, 6, 0, 0));
+    assert_false(is_at_side(12, 6, 12, 2));
+    assert_false(is_at_side(12, 6, 6, 0.5)); /* the mean of two ends */
+}
+
+/* Edges between two colours go, in both directions; points of no colour keep all. */
+static void a_graph_is_parted_by_colours(void **unused)
+{
+    (void)unused;
+    const float row[5][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
+    const int32_t colour[5] = {0, 0, 7, -1, 0};
+    const uint32_t first[6] = {0, 1, 2, 3, 5, 6}, edge[6] = {1, 0, 3, 2, 4, 3};
+    plm_error error = {0};
+    plm_graph graph;
+    assert_ok(plm_graph_build(row, 5, 2, 1.5, &graph, &error));
+    plm_graph_part(&graph, colour);
+    assert_memory_equal(graph.first, first, sizeof first);
+    assert_memory_equal(graph.edge, edge, sizeof edge);
+    plm_graph_free(&graph);
 }
 
 static void a_leaflet_hangs_at_an_end(void **unused)
@@ -164,6 +205,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_leaflet_hangs_at_an_end),
+        cmocka_unit_test(a_touch_at_a_side_is_at_no_end),
+        cmocka_unit_test(a_graph_is_parted_by_colours),
         cmocka_unit_test(a_leaflet_goes_to_the_rachis_at_its_base),
         cmocka_unit_test(a_leaflet_beside_a_rachis_stays),
         cmocka_unit_test(a_leaflet_far_from_the_rachis_stays),
