@@ -7,14 +7,15 @@
 #include "segment/ground_mark.h"
 
 static const double most_mixed = 0.1; /* share of points that would be taken for the other kind */
+static const double SUPPOSED = 200;   /* points that are as if they had been seen in colours beside the seen ones */
 static const double CLEAR = 2;        /* of a surface's slack: so far off it few points of the surface are */
 static const double ENOUGH = 0.1; /* share of what is no ground that is clear of it: less would leave a low plant out */
 
-/* Makes counts by colour, each smoothed over the neighbouring colours, shares of all. */
+/* Makes shares of counts by colour. What few points leave open the neighbouring colours tell: as much as SUPPOSED points do. */
 static void spread(double count[PLM_COLOURS])
 {
     static const int stride[3] = {PLM_SHADES * PLM_SHADES, PLM_SHADES, 1};
-    double smooth[PLM_COLOURS] = {0}, sum = 0;
+    double smooth[PLM_COLOURS] = {0}, sum = 0, all = 0;
     for (int c = 0; c < PLM_COLOURS; c++) {
         smooth[c] += count[c];
         for (int axis = 0; axis < 3; axis++) {
@@ -23,8 +24,9 @@ static void spread(double count[PLM_COLOURS])
             if (at + 1 < PLM_SHADES) smooth[c + stride[axis]] += 0.1 * count[c];
         }
     }
-    for (int c = 0; c < PLM_COLOURS; c++) sum += smooth[c];
-    for (int c = 0; c < PLM_COLOURS; c++) count[c] = sum > 0 ? smooth[c] / sum : 0;
+    for (int c = 0; c < PLM_COLOURS; c++) sum += smooth[c], all += count[c];
+    for (int c = 0; c < PLM_COLOURS; c++)
+        count[c] = sum > 0 ? (count[c] + SUPPOSED * smooth[c] / sum) / (all + SUPPOSED) : 0;
 }
 
 /* Does a point that is no ground teach the plant's colours? The tail of a dense ground's noise may be more than all of the plant. */
@@ -35,13 +37,20 @@ static bool is_clear(const plm_marker *m, size_t i)
     return !plm_at_table(m, CLEAR * m->table_slack, p);
 }
 
+/* Does a point that is ground teach the ground's colours? About a pot's rim, above the soil, leaves that hang over it may be among
+ * the wall's points; what the wall looks like, its lower parts tell. */
+static bool is_below_rim(const plm_marker *m, size_t i)
+{
+    return !(isfinite(m->over[i]) && m->over[i] > m->soil_slack);
+}
+
 bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
 {
     double plant[PLM_COLOURS] = {0}, low[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0, clear = 0, rest = 0;
     for (size_t i = 0; i < m->cloud->count; i++) {
         const int shade = plm_shade(m->cloud->rgb[i]);
         if (m->zone[i] != PLM_ZONE_FREE)
-            ground[shade]++;
+            ground[shade] += is_below_rim(m, i);
         else if (is_clear(m, i))
             plant[shade]++, clear++;
         else

@@ -28,6 +28,8 @@ typedef enum plm_zone {
     PLM_ZONE_INSIDE /**< ground, well below a surface */
 } plm_zone;
 
+#define PLM_LIP 0.15 /* of the wall's radius: the most that a lip reaches down from the rim */
+
 /** A marking in work. */
 typedef struct plm_marker {
     const plm_cloud *cloud;
@@ -42,7 +44,21 @@ typedef struct plm_marker {
     double soil_slack, table_slack, wall_slack; /**< how far from a surface a point of it may lie */
     double rim_height, inner;                   /**< top of the wall; inner radius of the rim over the outer one */
     double rim_radius;
+    double
+        wall_top; /**< from this height up the wall is the line of what is below, seen from outside; INFINITY: no line */
+    double wall_radius, wall_slope; /**< of that line, at wall_top and upwards */
+    double wall_band;               /**< how far from the line its points lie */
 } plm_marker;
+
+/** Radius of the pot's outside at a height. About the rim, patches of its inside, or leaves that hang over it, may have spoilt
+ * what was traced there. */
+static inline double plm_wall_radius(const plm_marker *m, double w)
+{
+    if (!(w > m->wall_top)) return plm_pot_radius(&m->scene->pot, w);
+    const double lip = m->rim_radius - m->wall_radius - m->wall_slope * (m->rim_height - m->wall_top);
+    const bool at_lip = w > m->rim_height - PLM_LIP * m->wall_radius;
+    return m->wall_radius + m->wall_slope * (fmin(w, m->rim_height) - m->wall_top) + (at_lip ? lip : 0);
+}
 
 /** Fits soil, table and rim, and fills over and zone. */
 plm_status plm_ground_zones(plm_marker *marker, plm_error *error);

@@ -54,7 +54,7 @@ static bool close_to_ground(const plm_marker *m, const double p[3])
     if (!s->has_pot)
         return plm_within_level(&s->level[s->soil], reach, p) &&
                plm_relief_over(&m->soil, p) < fmax(reach, 3 * m->soil_slack);
-    const double radius = plm_pot_radius(&s->pot, p[2]), out = plm_pot_distance(&s->pot, p) - radius;
+    const double radius = plm_wall_radius(m, p[2]), out = plm_pot_distance(&s->pot, p) - radius;
     const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - s->pot.soil;
     if (out < 0 && over < fmax(1.5 * m->cell, 2 * m->soil_slack)) return true;
     return p[2] < m->rim_height + 1.5 * m->cell && out < fmax(reach, 0.15 * radius) && out > -0.15 * radius - reach;

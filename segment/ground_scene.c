@@ -15,6 +15,8 @@ static const double SLIM = 0.045, LONG = 2;
  * seen. A level leaf whose rim hangs down makes such a wall (coverage 0.58), with 0.036 below it, of its stem; 0.0007 at most below
  * 20 pots, seen from 0.95 of all directions and more. */
 static const double BELOW = 0.1, BELOW_LEAST = 0.01, POT_COVERAGE = 0.55;
+/* Radii of the pot within which patches are its own: a wide table about it is no reason for a larger plant. */
+static const double ABOUT = 1.1;
 
 /* ---- Colour --------------------------------------------------------------------------------------------------- */
 
@@ -146,17 +148,19 @@ static double accept_pot(const plm_ground_scene *s)
     const double small = fmin(fmax((12 - top / cell) / 6, 0), 1);
     if (pot->coverage < POT_COVERAGE + 0.25 * small || pot->scatter > 0.06 * top + 0.5 * cell) return 0;
     if (pot->lid < 0.15 && (pot->coverage < 0.85 || pot->scatter > 0.05 * top + 0.3 * cell)) return 0;
-    double above = 0, below = 0, high = pot->rim;
+    double above = 0, below = 0, own = 0, high = pot->rim;
     for (size_t k = 0; k < t->surfels->count; k++) {
-        high = fmax(high, t->place[k][2]);
-        above += t->place[k][2] > fmax(pot->rim, pot->soil) + 3 * cell;
+        const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
+        high = fmax(high, p[2]);
+        above += p[2] > fmax(pot->rim, pot->soil) + 3 * cell;
+        own += p[2] > pot->rim || plm_pot_distance(pot, p) < ABOUT * plm_pot_radius(pot, p[2]);
         below += t->place[k][2] < pot->foot - 4 * cell && !near_level(s, t->place[k]);
     }
     /* The stem under a head is as round; no soil closes it. */
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
     if (top < SLIM * plm_norm(size) && pot->rim - pot->foot > LONG * top && pot->lid < 0.15) return 0;
     const double rest = fmax(BELOW * (pot->coverage - POT_COVERAGE) / (1 - POT_COVERAGE), BELOW_LEAST);
-    if (above < fmax(20, 0.01 * all) || below > rest * all) return 0;
+    if (above < fmax(20, 0.01 * own) || below > rest * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }
 

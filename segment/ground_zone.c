@@ -36,6 +36,9 @@ static const double SOIL_BUMP = 0.3, EVEN_BUMP = 0.1;
 
 /* Share of the most sectors at which a rim ends that has no end at half of all. */
 static const double SHARP = 0.75;
+static const double WIDEST_PART = 1.2; /* radii of the wall about which the rim is looked for */
+/* Voxels between the wall's line below the soil and what was traced there, at most: more is a wall that bends. */
+static const double BENT = 1.5;
 
 static double slack_of(const plm_relief *relief, double bump)
 {
@@ -83,80 +86,99 @@ static int sector(const plm_pot *pot, const double p[3])
     return s < 0 ? 0 : s >= SECTORS ? SECTORS - 1 : s;
 }
 
-/* Sectors in which points are seen at each height of the rim and at each radius above the soil. */
+/* Sectors in which points are seen at each height of the rim, from low to high. */
 typedef struct rim_view {
-    double low, high;            /* heights */
-    uint64_t at_height[PROFILE]; /* from low to high */
-    uint64_t at_radius[PROFILE]; /* from 0 to 1.2 radii of the wall */
+    double low, high;
+    uint64_t sectors[PROFILE];
 } rim_view;
 
-static void view_rim(const plm_marker *m, rim_view *view)
+static bool is_at_wall(double part, double slack)
+{
+    return part > 0.9 - slack && part < 1.04 + slack;
+}
+
+static void view_heights(const plm_marker *m, rim_view *view)
 {
     const plm_pot *pot = &m->scene->pot;
     const double top = pot->radius[pot->rows - 1], reach = fmax(4 * m->cell, 0.15 * top);
     *view = (rim_view){.low = pot->rim - reach, .high = pot->rim + reach};
-    const double lowest = fmin(view->low, pot->soil);
-    const double clear = (m->has_soil ? slack_of(&m->soil, EVEN_BUMP * m->cell) : 0) + 0.3 * m->cell; /* of the soil */
     for (size_t i = 0; i < m->cloud->count; i++) {
         const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
-        if (p[2] < lowest || p[2] >= view->high) continue;
-        const double part = plm_pot_distance(pot, p) / plm_pot_radius(pot, p[2]);
-        if (part >= 1.2) continue;
-        const uint64_t bit = UINT64_C(1) << sector(pot, p);
-        if (p[2] >= view->low && part > 0.9 - m->cell / top && part < 1.04 + m->cell / top)
-            view->at_height[(int)((p[2] - view->low) / (view->high - view->low) * PROFILE)] |= bit;
+        if (p[2] < view->low || p[2] >= view->high) continue;
+        const double r = plm_pot_distance(pot, p);
+        if (is_at_wall(r / plm_pot_radius(pot, p[2]), m->cell / top) ||
+            is_at_wall(r / plm_wall_radius(m, p[2]), m->cell / top))
+            view->sectors[(int)((p[2] - view->low) / (view->high - view->low) * PROFILE)] |= UINT64_C(1)
+                                                                                             << sector(pot, p);
+    }
+}
+
+/* Sectors in which points are seen above the soil, up to the rim, at each radius from 0 to WIDEST_PART of the wall's. */
+static void view_radii(const plm_marker *m, uint64_t sectors[PROFILE])
+{
+    const plm_pot *pot = &m->scene->pot;
+    const double clear = (m->has_soil ? slack_of(&m->soil, EVEN_BUMP * m->cell) : 0) + 0.3 * m->cell; /* of the soil */
+    /* The rim's upper side may lie just above where the wall was seen to end. */
+    const double top = fmax(pot->rim, m->rim_height + m->soil_slack);
+    memset(sectors, 0, PROFILE * sizeof *sectors);
+    for (size_t i = 0; i < m->cloud->count; i++) {
+        const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
+        if (p[2] >= top) continue;
         const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
-        if (over > clear && p[2] < pot->rim) view->at_radius[(int)(part / 1.2 * PROFILE)] |= bit;
+        if (!(over > clear)) continue;
+        const double part = plm_pot_distance(pot, p) / plm_wall_radius(m, p[2]);
+        if (part < WIDEST_PART) sectors[(int)(part / WIDEST_PART * PROFILE)] |= UINT64_C(1) << sector(pot, p);
     }
 }
 
 /* Inner radius of the rim over the outer one. Seen from the wall inwards: the rim ends where fewer than half of the sectors are seen,
  * or less than a share of the most, as the tail of the soil's noise may fill half of them. Where leaves fill all sectors there is no
  * such edge: NAN, and the rim is taken to be thin. */
-static double find_inner(const rim_view *view, double least_share)
+static double find_inner(const uint64_t sectors[PROFILE], double least_share)
 {
-    const int thickest = (int)(0.82 / 1.2 * PROFILE);
+    const int thickest = (int)(0.82 / WIDEST_PART * PROFILE);
     int most = 0;
     double inner = 1;
     for (int b = PROFILE - 1; b >= thickest; b--) {
-        const int n = count_bits(view->at_radius[b] | view->at_radius[b - 1]);
+        const int n = count_bits(sectors[b] | sectors[b - 1]);
         if (n > most) most = n;
         if (n >= SECTORS / 2 && n >= least_share * most)
-            inner = (b - 1.0) / PROFILE * 1.2;
+            inner = (b - 1.0) / PROFILE * WIDEST_PART;
         else if (inner < 1)
             return inner;
     }
     return NAN;
 }
 
-/* How high the rim is and how thick. */
-static void measure_rim(plm_marker *m)
+static void measure_height(plm_marker *m)
 {
-    const plm_pot *pot = &m->scene->pot;
     rim_view view;
-    view_rim(m, &view);
-    m->rim_height = pot->rim;
+    view_heights(m, &view);
     int best = 0;
     for (int b = 0; b < PROFILE; b++) {
-        const int n = count_bits(view.at_height[b]);
+        const int n = count_bits(view.sectors[b]);
         if (n > best) best = n;
         if (best >= SECTORS / 2 && n >= best / 2)
             m->rim_height = view.low + (b + 1.0) / PROFILE * (view.high - view.low);
     }
-    m->inner = find_inner(&view, 0);
-    if (isnan(m->inner)) m->inner = find_inner(&view, SHARP);
-    if (isnan(m->inner)) m->inner = 0.97;
-    m->inner = fmin(m->inner, 1 - m->wall_slack / pot->radius[pot->rows - 1]);
 }
 
-/* Outer radius of the rim: the wall below the soil, where only its outside is seen, as a straight line in height,
- * carried up to the rim; more where a lip stands out in most sectors. */
-static void measure_radius(plm_marker *m)
+static void measure_thickness(plm_marker *m)
+{
+    uint64_t sectors[PROFILE];
+    view_radii(m, sectors);
+    m->inner = find_inner(sectors, 0);
+    if (isnan(m->inner)) m->inner = find_inner(sectors, SHARP);
+    if (isnan(m->inner)) m->inner = 0.97;
+    m->inner = fmin(m->inner, 1 - m->wall_slack / plm_wall_radius(m, m->rim_height));
+}
+
+/* The outside of the wall: what is below the soil, where only its outside is seen, as a straight line in height. */
+static void measure_wall(plm_marker *m)
 {
     const plm_pot *pot = &m->scene->pot;
-    const double low = pot->foot + 0.4 * (pot->rim - pot->foot), high = fmin(pot->soil - m->cell, m->rim_height);
+    const double low = pot->foot + 0.4 * (pot->rim - pot->foot), high = fmin(pot->soil - m->cell, pot->rim);
     double base = plm_pot_radius(pot, high), slope = 0, band = 2 * m->cell;
-    m->rim_radius = plm_pot_radius(pot, m->rim_height);
     if (high - low < 4 * m->cell) return;
     for (int round = 0; round < LINE_ROUNDS; round++) {
         double n = 0, sum[2] = {0}, moment[2] = {0}, squares = 0;
@@ -175,20 +197,30 @@ static void measure_radius(plm_marker *m)
         base = sum[1] / n - slope * sum[0] / n;
         band = fmin(band, fmax(3 * sqrt(squares / n), 0.2 * m->cell));
     }
-    m->rim_radius = base + slope * (m->rim_height - high);
+    if (fabs(base - plm_pot_radius(pot, high)) > BENT * m->cell) return;
+    m->wall_top = high, m->wall_radius = base, m->wall_slope = slope, m->wall_band = band;
+}
+
+/* Outer radius of the rim: the wall's, carried up to it, or more where a lip stands out in most sectors. */
+static void measure_radius(plm_marker *m)
+{
+    const plm_pot *pot = &m->scene->pot;
+    m->rim_radius = plm_pot_radius(pot, m->rim_height);
+    if (!isfinite(m->wall_top)) return;
+    const double base = m->wall_radius, slope = m->wall_slope, reach = 0.2 * base;
+    m->rim_radius = base + slope * (m->rim_height - m->wall_top);
     uint64_t beyond[PROFILE] = {0};
-    const double reach = 0.2 * base;
     for (size_t i = 0; i < m->cloud->count; i++) {
         const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
-        if (p[2] < m->rim_height - 0.15 * base || p[2] > m->rim_height) continue;
-        const double out = plm_pot_distance(pot, p) - (base + slope * (p[2] - high));
+        if (p[2] < m->rim_height - PLM_LIP * base || p[2] > m->rim_height) continue;
+        const double out = plm_pot_distance(pot, p) - (base + slope * (p[2] - m->wall_top));
         if (out >= 0 && out < reach) beyond[(int)(out / reach * PROFILE)] |= UINT64_C(1) << sector(pot, p);
     }
     for (int b = PROFILE - 1; b >= 0; b--) {
         const double out = (b + 0.5) / PROFILE * reach;
-        if (out < 1.2 * band) break;
+        if (out < 1.2 * m->wall_band) break;
         if (count_bits(beyond[b]) < 0.6 * SECTORS) continue;
-        m->rim_radius += out - band / 3; /* the outermost are as far out as noise brings them */
+        m->rim_radius += out - m->wall_band / 3; /* the outermost are as far out as noise brings them */
         break;
     }
 }
@@ -200,7 +232,7 @@ static plm_zone zone_of_pot(const plm_marker *m, const double p[3], float *over_
     const plm_pot *pot = &m->scene->pot;
     const double top = m->rim_height + fmax(m->soil_slack, 4 * m->cell);
     if (p[2] < pot->foot - 3 * m->cell || p[2] > fmax(top, pot->soil + 8 * m->cell)) return PLM_ZONE_FREE;
-    const double radius = plm_pot_radius(pot, p[2]), out = plm_pot_distance(pot, p) - radius;
+    const double radius = plm_wall_radius(m, p[2]), out = plm_pot_distance(pot, p) - radius;
     if (out > m->wall_slack) return PLM_ZONE_FREE;
     const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
     *over_soil = (float)over;
@@ -233,10 +265,15 @@ plm_status plm_ground_zones(plm_marker *m, plm_error *error)
 {
     plm_status status = fit_reliefs(m, error);
     if (status != PLM_OK) return status;
+    m->wall_top = INFINITY;
     if (m->scene->has_pot) {
         m->wall_slack = fmax(0.8 * m->cell, fmin(2.5 * m->scene->pot.scatter, 1.5 * m->cell));
-        measure_rim(m);
+        m->rim_height = m->scene->pot.rim;
+        measure_wall(m);
+        m->rim_radius = m->wall_radius + m->wall_slope * (m->rim_height - m->wall_top); /* without a lip */
+        measure_height(m);
         measure_radius(m);
+        measure_thickness(m);
     }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < m->cloud->count; i++) {

@@ -8,6 +8,10 @@
 #include "cloud/random.h"
 #include "simulate/scan.h"
 
+/* Of the spacing: how far the centres of gaussians keep off a rim. A disc that was fitted to photographs reaches past its centre
+ * by some 0.85 of its scale, which is 0.62 of the spacing in the mean (see gaussian). */
+static const double RIM_GAP = 0.53;
+
 size_t plm_splat_positions(const plm_stage_set *stage, const plm_scan_options *options, double (*position)[3])
 {
     /* a spiral of even steps in height: from a little below the middle to nearly overhead */
@@ -107,7 +111,7 @@ static bool candidate(const splat_scan *splat, uint64_t k, plm_sample *sample)
     const double density = density_at(splat->stage, splat->options, point), spacing = splat->spacing / sqrt(density);
     if (plm_uniform_at(splat->key, at + 3) > density) return false;
     const double rim = rim_distance(splat->stage, face, point);
-    if (splat->options->is_gaussians && rim < 0.8 * spacing) return false;
+    if (splat->options->is_gaussians && rim < RIM_GAP * spacing) return false;
     if (!is_seen(splat, face, point, plm_mix(k))) return false;
     plm_face_normal(&splat->stage->mesh, face, normal);
     plm_sample_label(splat->stage, face, NULL, splat->options->seed, sample);
