@@ -37,20 +37,20 @@ static bool is_clear(const plm_marker *m, size_t i)
     return !plm_at_table(m, CLEAR * m->table_slack, p);
 }
 
-/* Does a point that is ground teach the ground's colours? About a pot's rim, above the soil, leaves that hang over it may be among
- * the wall's points; what the wall looks like, its lower parts tell. */
-static bool is_below_rim(const plm_marker *m, size_t i)
+/* Is a point that is ground above the soil, at the rim, where leaves that hang over it may be among the wall's points? */
+static bool is_at_rim(const plm_marker *m, size_t i)
 {
-    return !(isfinite(m->over[i]) && m->over[i] > m->soil_slack);
+    return isfinite(m->over[i]) && m->over[i] > m->soil_slack;
 }
 
 bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
 {
-    double plant[PLM_COLOURS] = {0}, low[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, mixed = 0, clear = 0, rest = 0;
+    double plant[PLM_COLOURS] = {0}, low[PLM_COLOURS] = {0}, ground[PLM_COLOURS] = {0}, rim[PLM_COLOURS] = {0},
+           mixed = 0, clear = 0, rest = 0, all = 0;
     for (size_t i = 0; i < m->cloud->count; i++) {
         const int shade = plm_shade(m->cloud->rgb[i]);
         if (m->zone[i] != PLM_ZONE_FREE)
-            ground[shade] += is_below_rim(m, i);
+            is_at_rim(m, i) ? rim[shade]++ : ground[shade]++;
         else if (is_clear(m, i))
             plant[shade]++, clear++;
         else
@@ -58,7 +58,12 @@ bool plm_ground_colours(const plm_marker *m, float plant_share[PLM_COLOURS])
     }
     if (clear < ENOUGH * (clear + rest))
         for (int c = 0; c < PLM_COLOURS; c++) plant[c] += low[c];
-    if (!(clear + rest > 0)) return false;
+    /* A rim may have colours of its own; those of leaves over it are more elsewhere. */
+    for (int c = 0; c < PLM_COLOURS; c++) {
+        if (rim[c] > plant[c]) ground[c] += rim[c];
+        all += ground[c];
+    }
+    if (!(clear + rest > 0 && all > 0)) return false;
     spread(plant);
     spread(ground);
     for (int c = 0; c < PLM_COLOURS; c++) {

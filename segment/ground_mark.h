@@ -44,20 +44,20 @@ typedef struct plm_marker {
     double soil_slack, table_slack, wall_slack; /**< how far from a surface a point of it may lie */
     double rim_height, inner;                   /**< top of the wall; inner radius of the rim over the outer one */
     double rim_radius;
-    double
-        wall_top; /**< from this height up the wall is the line of what is below, seen from outside; INFINITY: no line */
-    double wall_radius, wall_slope; /**< of that line, at wall_top and upwards */
+    double wall_top;                /**< the line below tells the wall from this height up; INFINITY: there is none */
+    double wall_radius, wall_slope; /**< of the line of the wall below the soil, seen from outside, at wall_top */
     double wall_band;               /**< how far from the line its points lie */
 } plm_marker;
 
-/** Radius of the pot's outside at a height. About the rim, patches of its inside, or leaves that hang over it, may have spoilt
- * what was traced there. */
+/** Radius of the pot's outside at a height: as it was traced, or farther out, where the wall below leads, as patches of the rim's
+ * inside may have pulled the trace in. */
 static inline double plm_wall_radius(const plm_marker *m, double w)
 {
-    if (!(w > m->wall_top)) return plm_pot_radius(&m->scene->pot, w);
+    const double traced = plm_pot_radius(&m->scene->pot, w);
+    if (!(w > m->wall_top)) return traced;
+    const double line = m->wall_radius + m->wall_slope * (fmin(w, m->rim_height) - m->wall_top);
     const double lip = m->rim_radius - m->wall_radius - m->wall_slope * (m->rim_height - m->wall_top);
-    const bool at_lip = w > m->rim_height - PLM_LIP * m->wall_radius;
-    return m->wall_radius + m->wall_slope * (fmin(w, m->rim_height) - m->wall_top) + (at_lip ? lip : 0);
+    return fmax(traced, w > m->rim_height - PLM_LIP * m->wall_radius ? line + lip : line);
 }
 
 /** Fits soil, table and rim, and fills over and zone. */

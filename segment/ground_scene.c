@@ -154,7 +154,7 @@ static double accept_pot(const plm_ground_scene *s)
         high = fmax(high, p[2]);
         above += p[2] > fmax(pot->rim, pot->soil) + 3 * cell;
         own += p[2] > pot->rim || plm_pot_distance(pot, p) < ABOUT * plm_pot_radius(pot, p[2]);
-        below += t->place[k][2] < pot->foot - 4 * cell && !near_level(s, t->place[k]);
+        below += p[2] < pot->foot - 4 * cell && !near_level(s, t->place[k]);
     }
     /* The stem under a head is as round; no soil closes it. */
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};

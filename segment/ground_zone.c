@@ -36,9 +36,6 @@ static const double SOIL_BUMP = 0.3, EVEN_BUMP = 0.1;
 
 /* Share of the most sectors at which a rim ends that has no end at half of all. */
 static const double SHARP = 0.75;
-static const double WIDEST_PART = 1.2; /* radii of the wall about which the rim is looked for */
-/* Voxels between the wall's line below the soil and what was traced there, at most: more is a wall that bends. */
-static const double BENT = 1.5;
 
 static double slack_of(const plm_relief *relief, double bump)
 {
@@ -70,6 +67,11 @@ static plm_status fit_reliefs(plm_marker *m, plm_error *error)
 }
 
 /* ---- Wall and rim --------------------------------------------------------------------------------------------- */
+
+static const double WIDEST_PART = 1.2; /* radii of the wall within which the rim is looked for */
+/* Voxels between the wall's line below the soil and what was traced there, at most: more is a wall that bends. And how far it may be
+ * carried up, in lengths of the wall that tell it. */
+static const double BENT = 1.5, FARTHEST = 2;
 
 static int count_bits(uint64_t bits)
 {
@@ -119,15 +121,15 @@ static void view_radii(const plm_marker *m, uint64_t sectors[PROFILE])
     const plm_pot *pot = &m->scene->pot;
     const double clear = (m->has_soil ? slack_of(&m->soil, EVEN_BUMP * m->cell) : 0) + 0.3 * m->cell; /* of the soil */
     /* The rim's upper side may lie just above where the wall was seen to end. */
-    const double top = fmax(pot->rim, m->rim_height + m->soil_slack);
+    const double top = m->has_soil ? fmax(pot->rim, m->rim_height + m->soil_slack) : pot->rim;
     memset(sectors, 0, PROFILE * sizeof *sectors);
     for (size_t i = 0; i < m->cloud->count; i++) {
         const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
         if (p[2] >= top) continue;
-        const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
-        if (!(over > clear)) continue;
         const double part = plm_pot_distance(pot, p) / plm_wall_radius(m, p[2]);
-        if (part < WIDEST_PART) sectors[(int)(part / WIDEST_PART * PROFILE)] |= UINT64_C(1) << sector(pot, p);
+        if (part >= WIDEST_PART) continue;
+        const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
+        if (over > clear) sectors[(int)(part / WIDEST_PART * PROFILE)] |= UINT64_C(1) << sector(pot, p);
     }
 }
 
@@ -179,7 +181,7 @@ static void measure_wall(plm_marker *m)
     const plm_pot *pot = &m->scene->pot;
     const double low = pot->foot + 0.4 * (pot->rim - pot->foot), high = fmin(pot->soil - m->cell, pot->rim);
     double base = plm_pot_radius(pot, high), slope = 0, band = 2 * m->cell;
-    if (high - low < 4 * m->cell) return;
+    if (high - low < 4 * m->cell || pot->rim - high > FARTHEST * (high - low)) return;
     for (int round = 0; round < LINE_ROUNDS; round++) {
         double n = 0, sum[2] = {0}, moment[2] = {0}, squares = 0;
         for (size_t i = 0; i < m->cloud->count; i++) {
@@ -199,6 +201,7 @@ static void measure_wall(plm_marker *m)
     }
     if (fabs(base - plm_pot_radius(pot, high)) > BENT * m->cell) return;
     m->wall_top = high, m->wall_radius = base, m->wall_slope = slope, m->wall_band = band;
+    m->rim_radius = base + slope * (m->rim_height - high); /* without a lip */
 }
 
 /* Outer radius of the rim: the wall's, carried up to it, or more where a lip stands out in most sectors. */
@@ -270,8 +273,8 @@ plm_status plm_ground_zones(plm_marker *m, plm_error *error)
         m->wall_slack = fmax(0.8 * m->cell, fmin(2.5 * m->scene->pot.scatter, 1.5 * m->cell));
         m->rim_height = m->scene->pot.rim;
         measure_wall(m);
-        m->rim_radius = m->wall_radius + m->wall_slope * (m->rim_height - m->wall_top); /* without a lip */
         measure_height(m);
+        if (m->rim_height < m->wall_top) m->wall_top = INFINITY;
         measure_radius(m);
         measure_thickness(m);
     }

@@ -19,7 +19,7 @@ static size_t thin_leaves(const plm_cloud *cloud, size_t every, bool *keep)
     return kept;
 }
 
-/* A seedling as splats of 0.6 mm of noise. The caller frees what is found; score: of the kept points. */
+/* A seedling as splats of 0.6 mm of noise. score: of the kept points. */
 static void segment_thinned(const char *kind, uint64_t seed, size_t points, size_t every, plm_habit *habit,
                             label_score *score)
 {
