@@ -11,12 +11,12 @@
 enum { DEFAULT_BUDGET = 80000, NEIGHBOURS = 10, SMOOTHING_ROUNDS = 2 };
 static const double WORKING_CELLS = 12; /* in R */
 static const double EDGE_CELLS = 3, JOIN_RADII = 2.5;
-/* A point with fewer links than FEW_LINKS lies amid gaps: 0.017 at most of the working points of evenly scanned plants do, 0.08 of real
- * maize of few points, whose straps are told as they are, and 0.11 and more of splats whose stem is dense and whose leaves are sparse,
- * over which distances along the links say little. Where more than LOOSE do, the cell grows until less than TIGHT do, in steps of
- * CELL_GROWTH to R / LEAST_CELLS. */
-static const double LOOSE = 0.1, TIGHT = 0.03, CELL_GROWTH = 1.15, LEAST_CELLS = 6;
-enum { FEW_LINKS = 5 };
+/* A point with fewer links than FEW_LINKS lies amid gaps: 0.017 at most of the working points of evenly scanned plants do, 0.11 and
+ * more of splats whose stem is dense and whose leaves are sparse (0.37 and more of their points have more than MANY_LINKS; of plants
+ * thinly scanned all over 0.27 at most). Distances along such links say little. Where more than LOOSE do amid more than a share DENSE
+ * with many, or more than SPARSE do, the cell grows until less than TIGHT do, in steps of CELL_GROWTH to R / LEAST_CELLS. */
+static const double LOOSE = 0.1, DENSE = 0.3, SPARSE = 0.2, TIGHT = 0.03, CELL_GROWTH = 1.15, LEAST_CELLS = 6;
+enum { FEW_LINKS = 5, MANY_LINKS = 10 };
 
 /* q = (q + mean of the neighbours) / 2 */
 static plm_status smooth(const plm_graph *graph, float *value, plm_error *error)
@@ -73,25 +73,30 @@ plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, plm_error
     return plm_graph_join(graph, sketch->working.cell, JOIN_RADII * sketch->scale.radius, error);
 }
 
-/* Share of the points that have few links. */
-static double few_links(const plm_graph *graph)
+/* Whether so many points have few links that the cell should grow, or grow further. */
+static bool is_loose(const plm_graph *graph, bool has_grown)
 {
-    size_t few = 0;
-    for (size_t i = 0; i < graph->count; i++) few += graph->first[i + 1] - graph->first[i] < FEW_LINKS;
-    return graph->count ? (double)few / (double)graph->count : 0;
+    size_t few = 0, many = 0;
+    for (size_t i = 0; i < graph->count; i++) {
+        const uint32_t links = graph->first[i + 1] - graph->first[i];
+        few += links < FEW_LINKS;
+        many += links > MANY_LINKS;
+    }
+    const double all = (double)graph->count;
+    if (has_grown) return (double)few > TIGHT * all;
+    return (double)few > ((double)many > DENSE * all ? LOOSE : SPARSE) * all;
 }
 
 /* Thins the base to the working points and links them, in cells that are wide enough for the sparse parts of the plant. */
 static plm_status take_working(plm_sketch *sketch, plm_error *error)
 {
-    double cell = fmax(sketch->scale.radius / WORKING_CELLS, sketch->scale.spacing), least = LOOSE;
-    for (;; cell *= CELL_GROWTH) {
+    double cell = fmax(sketch->scale.radius / WORKING_CELLS, sketch->scale.spacing);
+    for (bool has_grown = false;; has_grown = true, cell *= CELL_GROWTH) {
         plm_status status =
             plm_thin((const float(*)[3])sketch->base.xyz, sketch->base.count, cell, &sketch->working, error);
         if (status == PLM_OK) status = plm_sketch_link(sketch, EDGE_CELLS, &sketch->graph, error);
         const bool wider = CELL_GROWTH * cell <= sketch->scale.radius / LEAST_CELLS;
-        if (status != PLM_OK || !wider || few_links(&sketch->graph) <= least) return status;
-        least = TIGHT;
+        if (status != PLM_OK || !wider || !is_loose(&sketch->graph, has_grown)) return status;
         plm_thinned_free(&sketch->working);
         plm_graph_free(&sketch->graph);
     }
