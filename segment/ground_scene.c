@@ -17,6 +17,8 @@ static const double SLIM = 0.045, LONG = 2;
 static const double BELOW = 0.1, BELOW_LEAST = 0.01, POT_COVERAGE = 0.55;
 /* Radii of the pot within which patches are its own: a wide table about it is no reason for a larger plant. */
 static const double ABOUT = 1.1;
+/* Of its own patches, those above a pot at least; fewer where it is closed and seen all around, as no leaves are: a small rosette. */
+static const double ABOVE = 0.01, ABOVE_SURE = 0.003, SURE_COVERAGE = 0.9, SURE_LID = 0.5;
 
 /* ---- Colour --------------------------------------------------------------------------------------------------- */
 
@@ -160,7 +162,8 @@ static double accept_pot(const plm_ground_scene *s)
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
     if (top < SLIM * plm_norm(size) && pot->rim - pot->foot > LONG * top && pot->lid < 0.15) return 0;
     const double rest = fmax(BELOW * (pot->coverage - POT_COVERAGE) / (1 - POT_COVERAGE), BELOW_LEAST);
-    if (above < fmax(20, 0.01 * own) || below > rest * all) return 0;
+    const bool is_sure = pot->coverage > SURE_COVERAGE && pot->lid > SURE_LID;
+    if (above < fmax(20, (is_sure ? ABOVE_SURE : ABOVE) * own) || below > rest * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }
 

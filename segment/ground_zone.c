@@ -34,9 +34,6 @@ static bool on_table_level(const void *context, const double p[3])
 /* A point of the surface lies within 2.2 sigma (97 %) of its relief, or so many voxels: soil has bumps. */
 static const double SOIL_BUMP = 0.3, EVEN_BUMP = 0.1;
 
-/* Share of the most sectors at which a rim ends that has no end at half of all. */
-static const double SHARP = 0.75;
-
 static double slack_of(const plm_relief *relief, double bump)
 {
     return fmax(2.2 * relief->sigma, bump);
@@ -72,6 +69,10 @@ static const double WIDEST_PART = 1.2; /* radii of the wall within which the rim
 /* Voxels between the wall's line below the soil and what was traced there, at most: more is a wall that bends. And how far it may be
  * carried up, in lengths of the wall that tell it. */
 static const double BENT = 1.5, FARTHEST = 2;
+
+/* Shares of the soil's density from which on points of a rim are more than stray ones, one after the other until an edge is seen:
+ * much noise leaves few of a low rim's points above it. */
+static const double DENSE[] = {0.25, 0.1, 0};
 
 static int count_bits(uint64_t bits)
 {
@@ -115,36 +116,54 @@ static void view_heights(const plm_marker *m, rim_view *view)
     }
 }
 
-/* Sectors in which points are seen above the soil, up to the rim, at each radius from 0 to WIDEST_PART of the wall's. */
-static void view_radii(const plm_marker *m, uint64_t sectors[PROFILE])
+/* Points of a level as dense as the soil, in a sector of one bin of radii at the wall. 0 where no soil is seen. */
+static double soil_in_sector(const plm_marker *m)
+{
+    const plm_pot *pot = &m->scene->pot;
+    const double part = 0.8;
+    double soil = 0;
+    for (size_t i = 0; i < m->cloud->count && m->has_soil; i++) {
+        const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
+        if (plm_pot_distance(pot, p) > part * plm_wall_radius(m, p[2])) continue;
+        soil += fabs(plm_relief_over(&m->soil, p)) <= m->soil_slack;
+    }
+    return soil / (part * part) * 2 * WIDEST_PART / PROFILE / SECTORS;
+}
+
+/* Points that are seen above the soil, up to the rim, by sector at each radius from 0 to WIDEST_PART of the wall's. */
+static void view_radii(const plm_marker *m, uint32_t seen[PROFILE][SECTORS])
 {
     const plm_pot *pot = &m->scene->pot;
     const double clear = (m->has_soil ? slack_of(&m->soil, EVEN_BUMP * m->cell) : 0) + 0.3 * m->cell; /* of the soil */
     /* The rim's upper side may lie just above where the wall was seen to end. */
     const double top = m->has_soil ? fmax(pot->rim, m->rim_height + m->soil_slack) : pot->rim;
-    memset(sectors, 0, PROFILE * sizeof *sectors);
+    memset(seen, 0, PROFILE * sizeof *seen);
     for (size_t i = 0; i < m->cloud->count; i++) {
         const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
         if (p[2] >= top) continue;
         const double part = plm_pot_distance(pot, p) / plm_wall_radius(m, p[2]);
         if (part >= WIDEST_PART) continue;
         const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - pot->soil;
-        if (over > clear) sectors[(int)(part / WIDEST_PART * PROFILE)] |= UINT64_C(1) << sector(pot, p);
+        if (over > clear) seen[(int)(part / WIDEST_PART * PROFILE)][sector(pot, p)]++;
     }
 }
 
-/* Inner radius of the rim over the outer one. Seen from the wall inwards: the rim ends where fewer than half of the sectors are seen,
- * or less than a share of the most, as the tail of the soil's noise may fill half of them. Where leaves fill all sectors there is no
- * such edge: NAN, and the rim is taken to be thin. */
-static double find_inner(const uint64_t sectors[PROFILE], double least_share)
+/* Sectors that have so many points at a radius or just inside of it. */
+static int count_sectors(const uint32_t outer[SECTORS], const uint32_t inner[SECTORS], double least)
+{
+    int n = 0;
+    for (int k = 0; k < SECTORS; k++) n += outer[k] >= least || inner[k] >= least;
+    return n;
+}
+
+/* Inner radius of the rim over the outer one. Seen from the wall inwards: the rim ends where fewer than half of the sectors have so
+ * many points. Where leaves fill all sectors there is no such edge: NAN, and the rim is taken to be thin. */
+static double find_inner(const uint32_t seen[PROFILE][SECTORS], double least)
 {
     const int thickest = (int)(0.82 / WIDEST_PART * PROFILE);
-    int most = 0;
     double inner = 1;
     for (int b = PROFILE - 1; b >= thickest; b--) {
-        const int n = count_bits(sectors[b] | sectors[b - 1]);
-        if (n > most) most = n;
-        if (n >= SECTORS / 2 && n >= least_share * most)
+        if (count_sectors(seen[b], seen[b - 1], least) >= SECTORS / 2)
             inner = (b - 1.0) / PROFILE * WIDEST_PART;
         else if (inner < 1)
             return inner;
@@ -165,14 +184,19 @@ static void measure_height(plm_marker *m)
     }
 }
 
-static void measure_thickness(plm_marker *m)
+static plm_status measure_thickness(plm_marker *m, plm_error *error)
 {
-    uint64_t sectors[PROFILE];
-    view_radii(m, sectors);
-    m->inner = find_inner(sectors, 0);
-    if (isnan(m->inner)) m->inner = find_inner(sectors, SHARP);
+    uint32_t(*seen)[SECTORS] = plm_alloc(PROFILE, sizeof *seen, error);
+    if (!seen) return PLM_E_MEMORY;
+    view_radii(m, seen);
+    const double soil = soil_in_sector(m);
+    m->inner = NAN;
+    for (size_t k = 0; k < sizeof DENSE / sizeof *DENSE && isnan(m->inner); k++)
+        m->inner = find_inner((const uint32_t(*)[SECTORS])seen, fmax(1, DENSE[k] * soil));
+    plm_free(seen);
     if (isnan(m->inner)) m->inner = 0.97;
     m->inner = fmin(m->inner, 1 - m->wall_slack / plm_wall_radius(m, m->rim_height));
+    return PLM_OK;
 }
 
 /* The outside of the wall: what is below the soil, where only its outside is seen, as a straight line in height. */
@@ -276,7 +300,8 @@ plm_status plm_ground_zones(plm_marker *m, plm_error *error)
         measure_height(m);
         if (m->rim_height < m->wall_top) m->wall_top = INFINITY;
         measure_radius(m);
-        measure_thickness(m);
+        status = measure_thickness(m, error);
+        if (status != PLM_OK) return status;
     }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < m->cloud->count; i++) {
