@@ -66,6 +66,7 @@ static plm_status fit_reliefs(plm_marker *m, plm_error *error)
 /* ---- Wall and rim --------------------------------------------------------------------------------------------- */
 
 static const double WIDEST_PART = 1.2; /* radii of the wall within which the rim is looked for */
+static const double THICKEST = 0.82;   /* the same: where it ends inwards at the latest */
 /* Voxels between the wall's line below the soil and what was traced there, at most: more is a wall that bends. And how far it may be
  * carried up, in lengths of the wall that tell it. */
 static const double BENT = 1.5, FARTHEST = 2;
@@ -73,6 +74,8 @@ static const double BENT = 1.5, FARTHEST = 2;
 /* Shares of the soil's density from which on points of a rim are more than stray ones, one after the other until an edge is seen:
  * much noise leaves few of a low rim's points above it. */
 static const double DENSE[] = {0.25, 0.1, 0};
+/* Share of the most sectors at which a rim ends that has no end at half of all. */
+static const double SHARP = 0.75;
 
 static int count_bits(uint64_t bits)
 {
@@ -148,22 +151,25 @@ static void view_radii(const plm_marker *m, uint32_t seen[PROFILE][SECTORS])
     }
 }
 
-/* Sectors that have so many points at a radius or just inside of it. */
+/* Sectors that have so many points at a radius and just inside of it together. */
 static int count_sectors(const uint32_t outer[SECTORS], const uint32_t inner[SECTORS], double least)
 {
     int n = 0;
-    for (int k = 0; k < SECTORS; k++) n += outer[k] >= least || inner[k] >= least;
+    for (int k = 0; k < SECTORS; k++) n += outer[k] + inner[k] >= least;
     return n;
 }
 
 /* Inner radius of the rim over the outer one. Seen from the wall inwards: the rim ends where fewer than half of the sectors have so
- * many points. Where leaves fill all sectors there is no such edge: NAN, and the rim is taken to be thin. */
-static double find_inner(const uint32_t seen[PROFILE][SECTORS], double least)
+ * many points, or less than a share of the most. Where leaves fill all sectors there is no such edge: NAN, and the rim is taken to
+ * be thin. */
+static double find_inner(const uint32_t seen[PROFILE][SECTORS], double least, double least_share)
 {
-    const int thickest = (int)(0.82 / WIDEST_PART * PROFILE);
+    int most = 0;
     double inner = 1;
-    for (int b = PROFILE - 1; b >= thickest; b--) {
-        if (count_sectors(seen[b], seen[b - 1], least) >= SECTORS / 2)
+    for (int b = PROFILE - 1; b >= (int)(THICKEST / WIDEST_PART * PROFILE); b--) {
+        const int n = count_sectors(seen[b], seen[b - 1], least);
+        if (n > most) most = n;
+        if (n >= SECTORS / 2 && n >= least_share * most)
             inner = (b - 1.0) / PROFILE * WIDEST_PART;
         else if (inner < 1)
             return inner;
@@ -184,19 +190,17 @@ static void measure_height(plm_marker *m)
     }
 }
 
-static plm_status measure_thickness(plm_marker *m, plm_error *error)
+static void measure_thickness(plm_marker *m)
 {
-    uint32_t(*seen)[SECTORS] = plm_alloc(PROFILE, sizeof *seen, error);
-    if (!seen) return PLM_E_MEMORY;
+    uint32_t seen[PROFILE][SECTORS];
     view_radii(m, seen);
     const double soil = soil_in_sector(m);
     m->inner = NAN;
     for (size_t k = 0; k < sizeof DENSE / sizeof *DENSE && isnan(m->inner); k++)
-        m->inner = find_inner((const uint32_t(*)[SECTORS])seen, fmax(1, DENSE[k] * soil));
-    plm_free(seen);
+        m->inner = find_inner((const uint32_t(*)[SECTORS])seen, fmax(1, 2 * DENSE[k] * soil), 0);
+    if (isnan(m->inner)) m->inner = find_inner((const uint32_t(*)[SECTORS])seen, 1, SHARP);
     if (isnan(m->inner)) m->inner = 0.97;
     m->inner = fmin(m->inner, 1 - m->wall_slack / plm_wall_radius(m, m->rim_height));
-    return PLM_OK;
 }
 
 /* The outside of the wall: what is below the soil, where only its outside is seen, as a straight line in height. */
@@ -300,8 +304,7 @@ plm_status plm_ground_zones(plm_marker *m, plm_error *error)
         measure_height(m);
         if (m->rim_height < m->wall_top) m->wall_top = INFINITY;
         measure_radius(m);
-        status = measure_thickness(m, error);
-        if (status != PLM_OK) return status;
+        measure_thickness(m);
     }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < m->cloud->count; i++) {

@@ -11,9 +11,9 @@ static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in r
 static const double STRAP_EVIDENCE = 0.5;
 static const double STRAP_RISING = 0.36; /* ... or than this where larger balls find more tubes: the folds of straps */
 static const double TUBE_LEAVES = 0.5;   /* more of what is off the stem is tube: straps, ... */
-/* ... unless larger balls find no more tubes, and each leaf has many blades (below), which begin farther from the stem than they are long: noise
- * makes leaflets round (three tomatoes in 1.7 mm of it: 0.52 to 0.58 tube, beginning at 1.9 and more; of straps that larger balls do not make tubes
- * those with many blades begin at 0.29). */
+/* ... unless larger balls find no more tubes, the leaves have many blades (below; three on one foot), and these begin farther from
+ * the stem than they are long: noise makes leaflets round (three tomatoes in 1.7 mm of it: 0.52 to 0.58 tube, beginning at 1.9 and
+ * more; of straps that larger balls do not make tubes those with many blades begin at 0.29). */
 static const double ON_RACHISES = 1;
 /* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
  * but not both: those with 0.35 on it have 0.66 tube at most. */
@@ -47,8 +47,10 @@ static const double ON_PETIOLES = 0.5, STRAP_SURE = 0.75;
  * depth cameras, of 280 plants with petioles there). Straps that thick feet tell are longer (2.96 and more but for a seedling of 2.1
  * and 0.95, 15 real and 42 virtual), or torn to several blades a leaf by the noise. */
 static const double STRAP_WIDE = 2.2;
-/* Nor do blades of petioles begin nearer than this (of their length; 0.40 at least of 110 plants in 0.5 to 6 mm of noise): in noise of a third of the
- * stem's radius straps are as wide (1.2 to 2.0 of six maize, which began at 0.09 to 0.22). */
+/* In noise of a third of the stem's radius straps are as wide, but blades on petioles do not begin that near: 0.40 of their length at
+ * least of 110 plants in 0.5 to 6 mm of noise, where six maize of 1.2 to 2.0 began at 0.09 to 0.22. So wide blades that begin nearer
+ * than this, in noise of so many stem radii, are straps'. */
+static const double STRAP_WIDE_NOISE = 0.25;
 static const double STRAP_START_WIDE = 0.25;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
  * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
@@ -204,12 +206,19 @@ static bool may_have_thick_feet(const leaf_tally *tally)
     return tally->strap > STRAP_LEAST * tally->area;
 }
 
-/* Whether blades are long and near to the stem, as those of straps, or so near that noise alone makes them wide. */
-static bool have_long_blades(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape)
+/* Whether noise makes blades look wide, which begin at the stem all the same. */
+static bool are_widened(const plm_sketch *sketch, const blade_shape *shape)
+{
+    return sketch->scale.noise > STRAP_WIDE_NOISE * sketch->scale.stem_radius && shape->elongation > 0 &&
+           shape->start <= STRAP_START_WIDE;
+}
+
+/* Whether blades are long and near to the stem, as those of straps, or would be so without the noise. */
+static bool have_strap_blades(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape)
 {
     const bool is_noisy = sketch->scale.noise > STRAP_NOISE * sketch->scale.stem_radius;
     const bool is_tubeless_mostly = 2 * tally->tubeless > tally->feet;
-    if (is_noisy && is_tubeless_mostly && shape->elongation > 0 && shape->start <= STRAP_START_WIDE) return true;
+    if (is_tubeless_mostly && are_widened(sketch, shape)) return true;
     const double latest = !is_noisy ? STRAP_START_CLEAR : is_tubeless_mostly ? STRAP_START_TUBELESS : STRAP_START;
     return shape->elongation > STRAP_LONG && shape->start <= latest;
 }
@@ -229,11 +238,11 @@ static plm_habit guess_leafy(const plm_sketch *sketch, const leaf_tally *tally, 
     const bool slim = !many && tally->slim_strap + tubes * tally->area > STRAP_WITH_TUBES * tally->area;
     bool strap = slim || have_thick_feet(sketch, tally, many);
     if (strap && !slim && tally->strap <= STRAP_SURE * tally->area) {
-        const bool wide = shape->elongation > 0 && shape->elongation <= STRAP_WIDE && shape->start > STRAP_START_WIDE &&
+        const bool wide = shape->elongation > 0 && shape->elongation <= STRAP_WIDE && !are_widened(sketch, shape) &&
                           tally->strap + tubes * tally->area <= STRAP_SURE * tally->area;
         strap = compound ? shape->start <= ON_PETIOLES : !wide;
     }
-    strap = strap || (may_have_thick_feet(tally) && have_long_blades(sketch, tally, shape));
+    strap = strap || (may_have_thick_feet(tally) && have_strap_blades(sketch, tally, shape));
     return strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
 }
 
@@ -242,8 +251,8 @@ plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *grou
     const leaf_tally tally = count_leaves(sketch, groups);
     const double tubes = tube_leaves(sketch);
     const bool many = !sketch->scale.rises && (double)tally.blades >= MANY_BLADES * (double)tally.leafy;
-    blade_shape shape;
-    const plm_status status = find_blade_shape(sketch, groups, &shape, error);
+    blade_shape shape = {0};
+    const plm_status status = sketch->stem.count ? find_blade_shape(sketch, groups, &shape, error) : PLM_OK;
     if (status != PLM_OK) return status;
     if (is_bare(sketch, groups))
         *habit = PLM_HABIT_BARE_STEM;
