@@ -17,8 +17,8 @@ static const double SLIM = 0.045, LONG = 2;
 static const double BELOW = 0.1, BELOW_LEAST = 0.01, POT_COVERAGE = 0.55;
 /* Radii of the pot within which patches are its own: a wide table about it is no reason for a larger plant. */
 static const double ABOUT = 1.1;
-/* Of its own patches, those above a pot at least; fewer where it is closed and seen all around, as of 216 virtual plants without a pot,
- * heads among them, none is: it bears a small rosette. */
+/* Of its own patches, those above a pot at least; fewer where it is closed and seen all around, as what bears a small
+ * rosette is (of 216 virtual plants without a pot, heads among them, none comes this far). */
 static const double ABOVE = 0.01, ABOVE_SURE = 0.003, SURE_COVERAGE = 0.9, SURE_LID = 0.5;
 
 /* ---- Colour --------------------------------------------------------------------------------------------------- */

@@ -12,8 +12,8 @@ static const double STRAP_EVIDENCE = 0.5;
 static const double STRAP_RISING = 0.36; /* ... or than this where larger balls find more tubes: the folds of straps */
 static const double TUBE_LEAVES = 0.5;   /* more of what is off the stem is tube: straps, ... */
 /* ... unless larger balls find no more tubes, the leaves have many blades (below; three on one foot), and these begin farther from
- * the stem than they are long: noise makes leaflets round (three tomatoes in 1.7 mm of it: 0.52 to 0.58 tube, beginning at 1.9 and
- * more; of straps that larger balls do not make tubes those with many blades begin at 0.29). */
+ * the stem than they are long: noise makes leaflets round (three tomatoes in a quarter of the stem's radius of it: 0.52 to 0.58
+ * tube, beginning at 1.87 and more; of straps that larger balls do not make tubes those with many blades begin at 0.29). */
 static const double ON_RACHISES = 1;
 /* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
  * but not both: those with 0.35 on it have 0.66 tube at most. */

@@ -391,7 +391,7 @@ static void long_blades_at_the_stem_are_straps_in_little_noise(void **unused)
 }
 
 /* From depth cameras in noise of a third of the stem's radius. Maize whose blades seem as wide as those on petioles, but begin at the
- * stem, were simple (76006: areas 36 % too small); tomatoes whose leaflets seem round, but are far from the stem, were straps (76001: areas
+ * stem, were simple (76006: areas 36 to 45 % too small); tomatoes whose leaflets seem round, but are far from the stem, were straps (76001: areas
  * 52 to 151 % too large). */
 static void what_noise_makes_wide_or_round_is_told_by_where_it_begins(void **unused)
 {
