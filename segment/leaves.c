@@ -5,6 +5,7 @@
 #include "segment/junction.h"
 #include "segment/leaflet_stalks.h"
 #include "segment/rosette_core.h"
+#include "segment/round_leaves.h"
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
 #include "segment/strap_leaves.h"
@@ -193,15 +194,42 @@ static plm_status leaves_without_petioles(plm_sketch *sketch, plm_error *error)
     return status;
 }
 
+static plm_status find_groups_again(plm_sketch *sketch, double blade_cost, plm_side_groups *groups, plm_error *error)
+{
+    plm_side_groups_free(groups);
+    return plm_side_groups_find(sketch, blade_cost, groups, error);
+}
+
 /* What hangs on the stem; petioles that a gap parts from their leaves are linked with them first. */
 static plm_status find_groups(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
 {
     size_t links = 0;
     plm_status status = plm_side_groups_find(sketch, 1, groups, error);
     if (status == PLM_OK && sketch->stem.count) status = plm_bridge_tubes(sketch, groups, &links, error);
-    if (status != PLM_OK || !links) return status;
-    plm_side_groups_free(groups);
-    return plm_side_groups_find(sketch, 1, groups, error);
+    return status == PLM_OK && links ? find_groups_again(sketch, 1, groups, error) : status;
+}
+
+/* Leaves all of which noise makes round get blades; what hangs on the stem is found anew then. */
+static plm_status find_round_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
+{
+    bool found;
+    plm_status status = plm_round_leaves(sketch, groups, &found, error);
+    if (status != PLM_OK || !found) return status;
+    status = plm_sketch_tidy(sketch, error);
+    return status == PLM_OK ? find_groups_again(sketch, 1, groups, error) : status;
+}
+
+/* Of leaves with petioles on a stem: makes each group one leaf. */
+static plm_status make_groups_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
+{
+    const bool is_simple = sketch->habit == PLM_HABIT_SIMPLE, is_compound = sketch->habit == PLM_HABIT_COMPOUND;
+    plm_status status = is_simple || is_compound ? find_round_leaves(sketch, groups, error) : PLM_OK;
+    /* Where the stem's line ended early, its rest is one foot of several petioles. */
+    if (status == PLM_OK && is_simple) status = plm_side_groups_split(sketch, groups, error);
+    if (status != PLM_OK || !is_compound) return status;
+    status = find_groups_again(sketch, LEAFLET_COST, groups, error);
+    if (status == PLM_OK) status = plm_leaflet_stalks(sketch, LEAFLET_COST, groups, error);
+    return status == PLM_OK ? join_leaflets(sketch, groups, error) : status;
 }
 
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error)
@@ -216,17 +244,7 @@ plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error)
         sketch->habit = sketch->asked;
         if (sketch->asked == PLM_HABIT_UNKNOWN) status = plm_habit_guess(sketch, &groups, &sketch->habit, error);
     }
-    if (status == PLM_OK) {
-        /* Where the stem's line ended early, its rest is one foot of several petioles. */
-        if (sketch->habit == PLM_HABIT_SIMPLE && sketch->stem.count)
-            status = plm_side_groups_split(sketch, &groups, error);
-        if (sketch->habit == PLM_HABIT_COMPOUND && sketch->stem.count) {
-            plm_side_groups_free(&groups);
-            status = plm_side_groups_find(sketch, LEAFLET_COST, &groups, error);
-            if (status == PLM_OK) status = plm_leaflet_stalks(sketch, LEAFLET_COST, &groups, error);
-            if (status == PLM_OK) status = join_leaflets(sketch, &groups, error);
-        }
-    }
+    if (status == PLM_OK && sketch->stem.count) status = make_groups_leaves(sketch, &groups, error);
     if (status == PLM_OK) {
         if (sketch->habit == PLM_HABIT_BARE_STEM)
             no_leaves(sketch);

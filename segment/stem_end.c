@@ -204,19 +204,23 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
-    bool again = true, forked;
+    bool again = true, turned = false, forked;
     plm_status status = plm_stem_leave_thin(sketch, INTERNODE_LEAST * sketch->scale.radius, &forked, error);
     if (status == PLM_OK && forked) plm_sketch_mark_stem(sketch);
-    for (int round = 0; round < ROUNDS && again && status == PLM_OK; round++) {
+    for (int round = 0; round <= ROUNDS && again && status == PLM_OK; round++) {
         stem_top top;
         status = find_top(sketch, &top, error);
         if (status != PLM_OK) return status;
+        bool left = false;
         again = false;
-        if (round == 0)
-            status = plm_stem_leave_rachis(sketch, &top.groups, top.end, SESSILE * top.typical, &again, error);
-        if (again) plm_sketch_mark_stem(sketch);
-        if (status == PLM_OK && !again) status = leave_petiole(sketch, &top, &again, error);
-        if (status == PLM_OK && round == 0 && !again) leave_sessile_end(sketch, &top);
+        /* A turn taken in the last round may have led into a rachis. */
+        if (round == 0 || turned)
+            status = plm_stem_leave_rachis(sketch, &top.groups, top.end, SESSILE * top.typical, &left, error);
+        if (left) plm_sketch_mark_stem(sketch);
+        if (status == PLM_OK && !left && round < ROUNDS) status = leave_petiole(sketch, &top, &again, error);
+        if (status == PLM_OK && round == 0 && !left && !again) leave_sessile_end(sketch, &top);
+        turned = again;
+        again |= left && round == 0;
         plm_side_groups_free(&top.groups);
     }
     return status == PLM_OK ? plm_stem_drop_false(sketch, error) : status;

@@ -5,9 +5,8 @@
 #include "segment/side_groups.h"
 
 /** Takes the stem's path out of a rachis, which *done says: straight on where the stem goes on, else it ends there. What hangs on it
- * beyond a sharp turn down counts as leaflets. groups: what
- * hangs on the path; end: arc length from which on a foot is at its end; petiole: least tube of a leaf's blade.
- * PLM_E_MEMORY. */
+ * beyond a sharp turn down counts as leaflets, and so do blades together far beyond the last leaf. groups: what hangs on the
+ * path; end: arc length from which on a foot is at its end; petiole: least tube of a leaf's blade. PLM_E_MEMORY. */
 plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *groups, double end, double petiole,
                                  bool *done, plm_error *error);
 

@@ -4,6 +4,7 @@
 
 #include "cloud/linear.h"
 #include "segment/stem_fit.h"
+#include "segment/stem_rachis.h"
 #include "support/label_score.h"
 #include "support/virtual_plant.h"
 
@@ -90,6 +91,21 @@ static void a_way_that_turns_down_has_left_the_stem(void **unused)
                   0.9);
 }
 
+/* Noise makes rags of tube of a leaflet that the way ran into: single blades with long tubes, together, twice as far beyond the last
+ * leaf as leaves are from each other. */
+static void blades_together_far_beyond_the_leaves_are_leaflets(void **unused)
+{
+    (void)unused;
+    check_soybean(&(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 77006, .noise = 5e-4}, 0.9);
+}
+
+/* The way was right; a turn before the last leaf's foot was not. */
+static void a_turn_taken_into_a_rachis_is_taken_back(void **unused)
+{
+    (void)unused;
+    check_soybean(&(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 78023, .noise = 9e-4}, 0.9);
+}
+
 /* Above the first leaves the scan has a gap, so that what is below is a piece of tube of its own. */
 static void a_stem_goes_on_below_a_gap(void **unused)
 {
@@ -135,8 +151,8 @@ static void add_nodes(plm_stem_path *stem, const double from[3], const double al
     plm_stem_measure_along(stem);
 }
 
-/* Radii of the branches; the way goes up the one that leaves the line. Gives how far beside the line the way ends. */
-static double leave_fork(double straight, double aside, bool *done)
+/* Radii of the branches; the way goes up the one that leaves the line. */
+static fork *make_fork(double straight, double aside)
 {
     static fork f;
     static const double base[3] = {0, 0, 0}, up[3] = {0, 0, 1}, node[3] = {0, 0, 0.06};
@@ -157,10 +173,24 @@ static double leave_fork(double straight, double aside, bool *done)
     add_tube(&f, node, out, 0.06, aside);
     add_nodes(stem, base, up, 0.06, 2e-3);
     add_nodes(stem, node, out, 0.06, aside);
-    assert_ok(plm_stem_leave_thin(&f.sketch, 8e-3, done, &error));
+    return &f;
+}
+
+/* Gives how far beside the line the way ends. */
+static double end_beside(fork *f)
+{
+    const plm_stem_path *stem = &f->sketch.stem;
     const double beside = stem->node[stem->count - 1][0];
-    plm_stem_path_free(stem);
+    plm_stem_path_free(&f->sketch.stem);
     return beside;
+}
+
+static double leave_fork(double straight, double aside, bool *done)
+{
+    plm_error error = {0};
+    fork *f = make_fork(straight, aside);
+    assert_ok(plm_stem_leave_thin(&f->sketch, 8e-3, done, &error));
+    return end_beside(f);
 }
 
 static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
@@ -175,6 +205,44 @@ static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
     assert_false(done);
     assert_true(leave_fork(0, 1.1e-3, &done) > 0.02); /* a stem that thins has no other branch */
     assert_false(done);
+}
+
+/* What hangs on the way, in mm: its foot, its tube and its blades. */
+typedef struct hanging {
+    double along, tube;
+    size_t blades;
+} hanging;
+
+/* Whether a way that turns aside at 60 mm, above leaves of three leaflets at three places, leaves that branch for what hangs there. */
+static bool leaves_rachis(const double leaf[3], const hanging *top, size_t count)
+{
+    plm_error error = {0};
+    plm_side_group group[8] = {{0}};
+    const plm_side_groups groups = {.count = 3 + count, .group = group};
+    for (size_t g = 0; g < groups.count; g++) {
+        const hanging it = g < 3 ? (hanging){leaf[g], 50, 3} : top[g - 3];
+        group[g] = (plm_side_group){
+            .has_foot = true, .along = 1e-3 * it.along, .blades = it.blades, .tube_length = 1e-3 * it.tube};
+    }
+    fork *f = make_fork(2e-3, 2e-3);
+    bool done;
+    assert_ok(plm_stem_leave_rachis(&f->sketch, &groups, 0.112, 3e-3, &done, &error));
+    assert_true(done == (end_beside(f) < 1e-3));
+    return done;
+}
+
+static void leaflets_are_told_by_short_tubes_or_by_their_place(void **unused)
+{
+    (void)unused;
+    static const double leaf[3] = {20, 30, 40}, apart[3] = {10, 30, 50};
+    assert_true(leaves_rachis(leaf, (const hanging[]){{100, 5, 1}, {105, 5, 1}}, 2));
+    assert_false(
+        leaves_rachis(leaf, (const hanging[]){{30, 5, 1}, {100, 5, 1}, {105, 5, 1}}, 3)); /* one among leaves */
+    assert_true(leaves_rachis(leaf, (const hanging[]){{95, 15, 1}, {100, 17, 1}, {105, 10, 2}}, 3));
+    assert_false(leaves_rachis(leaf, (const hanging[]){{100, 15, 3}}, 1));               /* a young leaf */
+    assert_false(leaves_rachis(leaf, (const hanging[]){{75, 15, 1}, {105, 15, 1}}, 2));  /* two */
+    assert_false(leaves_rachis(apart, (const hanging[]){{75, 15, 1}, {80, 15, 1}}, 2));  /* as far as others */
+    assert_false(leaves_rachis(leaf, (const hanging[]){{100, 25, 1}, {105, 25, 1}}, 2)); /* with petioles */
 }
 
 /* A way that turns aside for 4 mm, and then back (out: false) or on. */
@@ -265,9 +333,12 @@ int main(void)
         cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
         cmocka_unit_test(a_turn_that_is_undone_leaves_no_stem),
         cmocka_unit_test(a_way_that_turns_down_has_left_the_stem),
+        cmocka_unit_test(blades_together_far_beyond_the_leaves_are_leaflets),
+        cmocka_unit_test(a_turn_taken_into_a_rachis_is_taken_back),
         cmocka_unit_test(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
+        cmocka_unit_test(leaflets_are_told_by_short_tubes_or_by_their_place),
         cmocka_unit_test(a_turn_that_is_undone_is_told),
         cmocka_unit_test(who_says_simple_gets_a_low_stem),
     };
