@@ -70,28 +70,20 @@ static void what_is_half_as_large_as_leaves_is_one(void **unused)
     assert_int_equal(blade_of((bare){120, 0.3, 0.5, 3, true, false}), 0); /* a bare plant */
 }
 
-/* From a depth camera in noise of a quarter of the stem's radius and more: the lowest leaf of each of these tomatoes was stem. */
+/* From a depth camera in noise of 0.29 of the stem's radius: the lowest leaf was stem (IoU 0.78). */
 static void a_tomatos_lowest_leaf_is_no_branch(void **unused)
 {
     (void)unused;
-    static const struct {
-        uint64_t seed;
-        double noise, iou;
-    } plant[] = {{57092, 5e-4, 0.85}, {37167, 9e-4, 0.85}}; /* IoU 0.78 and 0.81, a leaf missed in each */
-    for (size_t k = 0; k < sizeof plant / sizeof *plant; k++) {
-        plm_error error = {0};
-        label_score score;
-        virtual_plant made = virtual_plant_make(
-            "tomato", 0,
-            &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = plant[k].seed, .noise = plant[k].noise});
-        const plm_cloud *cloud = &made.scan.cloud;
-        assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ,
-                                      &score, &error));
-        print_message("tomato %d: %zu of %zu leaves, F1 %.3f, IoU %.3f\n", (int)plant[k].seed, score.leaves_found,
-                      score.leaves, score.f1, score.iou_mean);
-        assert_true(score.f1 == 1 && score.iou_mean > plant[k].iou);
-        virtual_plant_free(&made);
-    }
+    plm_error error = {0};
+    label_score score;
+    virtual_plant made =
+        virtual_plant_make("tomato", 0, &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 57092, .noise = 5e-4});
+    const plm_cloud *cloud = &made.scan.cloud;
+    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
+                                  &error));
+    print_message("%zu of %zu leaves, F1 %.3f, IoU %.3f\n", score.leaves_found, score.leaves, score.f1, score.iou_mean);
+    assert_true(score.f1 == 1 && score.iou_mean > 0.85);
+    virtual_plant_free(&made);
 }
 
 int main(void)
