@@ -55,7 +55,7 @@ static const double STRAP_START_WIDE = 0.33;
 /* Where noise of so many stem radii joins straps, one foot has many blades far from the stem. Leaflets stand to the sides of their
  * rachis, so that their squared length along the way from the stem over their area is less, and rachises make a plant larger than
  * its stem is thick: its size in R over that elongation is 18.8 at least of 140 tomatoes and soybeans in noise of 0.15 and more, and
- * 10.7 to 15.2 of eight maize with as many blades, whose elongation is 1.93 and more. */
+ * 9.8 to 15.2 of 13 maize that would pass for compound. */
 static const double STRAP_JOINED_NOISE = 0.2, STRAP_JOINED = 1.6, STRAP_STOUT = 17;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
  * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
@@ -256,7 +256,7 @@ static plm_habit guess_leafy(const plm_sketch *sketch, const leaf_tally *tally, 
         strap = compound ? shape->start <= ON_PETIOLES : !wide;
     }
     strap = strap || (may_have_thick_feet(tally) && have_strap_blades(sketch, tally, shape)) ||
-            (many && are_joined_straps(sketch, shape));
+            (compound && are_joined_straps(sketch, shape));
     return strap ? PLM_HABIT_STRAP : compound ? PLM_HABIT_COMPOUND : PLM_HABIT_SIMPLE;
 }
 
