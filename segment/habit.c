@@ -50,12 +50,11 @@ static const double STRAP_WIDE = 2.2;
 /* In noise of a third of the stem's radius straps are as wide, but blades on petioles do not begin that near: 0.40 of their length at
  * least of 250 plants in 0.5 to 6 mm of noise, where seven maize of 1.2 to 2.0 began at 0.09 to 0.26. So wide blades that begin nearer
  * than this, in noise of so many stem radii, are straps'. */
-static const double STRAP_WIDE_NOISE = 0.25;
-static const double STRAP_START_WIDE = 0.33;
-/* Where noise of so many stem radii joins straps, one foot has many blades far from the stem. Leaflets stand to the sides of their
+static const double STRAP_START_WIDE = 0.33, STRAP_WIDE_NOISE = 0.25;
+/* In noise of so many stem radii straps that touch may pass for the leaflets of a compound plant. Leaflets stand to the sides of their
  * rachis, so that their squared length along the way from the stem over their area is less, and rachises make a plant larger than
- * its stem is thick: its size in R over that elongation is 18.8 at least of 140 tomatoes and soybeans in noise of 0.15 and more, and
- * 9.8 to 15.2 of 13 maize that would pass for compound. */
+ * its stem is thick: its size in R over that elongation is 18.8 at least of 120 tomatoes and soybeans in noise of 0.15 and more, and
+ * 9.8 to 15.2 of 14 maize of as many blades a leaf and an elongation of 1.9 and more (six of which nothing else tells). */
 static const double STRAP_JOINED_NOISE = 0.2, STRAP_JOINED = 1.6, STRAP_STOUT = 17;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
  * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
@@ -234,7 +233,7 @@ static bool are_on_rachises(const leaf_tally *tally, const blade_shape *shape, b
     return many && tally->most >= 3 && shape->start > ON_RACHISES;
 }
 
-/* Whether many blades on a foot are straps that noise joins, on a stout plant. */
+/* Whether what passes for leaflets are straps that noise joins, on a stout plant. */
 static bool are_joined_straps(const plm_sketch *sketch, const blade_shape *shape)
 {
     const plm_scale *scale = &sketch->scale;

@@ -219,7 +219,7 @@ static plm_status find_round_leaves(plm_sketch *sketch, plm_side_groups *groups,
     return status == PLM_OK ? find_groups_again(sketch, 1, groups, error) : status;
 }
 
-/* Of leaves with petioles on a stem: makes each group one leaf. */
+/* Prepares the groups of plants of leaves with petioles, so that each is one leaf. */
 static plm_status make_groups_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
 {
     const bool is_simple = sketch->habit == PLM_HABIT_SIMPLE, is_compound = sketch->habit == PLM_HABIT_COMPOUND;

@@ -13,10 +13,10 @@
 static const double BLADES_LEAST = 1.5;   /* a leaf below: the plant has compound leaves */
 static const double LEAFLET_TUBE = 0.25;  /* of their tubes: a single blade with less may be a leaflet, ... */
 static const double LEAFLETS_TUBE = 0.15; /* ... and some that touch, with less than this */
-/* Leaflets that noise makes tube of in part have up to this (of such ones 0.32), ... */
+/* Leaflets that noise makes tube of in part have up to this, however many stand on a foot (of such ones 0.32), ... */
 static const double FAR_TUBE = 0.4;
 /* ... where the stretch between the last leaf and them is longer than so many times the longest internode (2.2; of 21 plants whose
- * topmost leaves have such tubes 0.3 to 1.1, and 1.6 of one with one such leaf), which is so many R at least, ... */
+ * topmost leaves have such tubes 0.3 to 1.1, and 1.6 of one with one such leaf), or than so many times so many R, ... */
 static const double FAR = 1.5, INTERNODE_LEAST = 2;
 static const double TOGETHER = 0.35;   /* ... and they lie within such a share of that stretch. */
 static const double FORK_BEFORE = 1.5; /* the way may leave the stem this far (in R) before the last leaf's foot, ... */
