@@ -209,26 +209,22 @@ static plm_status find_groups(plm_sketch *sketch, plm_side_groups *groups, plm_e
     return status == PLM_OK && links ? find_groups_again(sketch, 1, groups, error) : status;
 }
 
-/* Leaves all of which noise makes round get blades; what hangs on the stem is found anew then. */
-static plm_status find_round_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
-{
-    bool found;
-    plm_status status = plm_round_leaves(sketch, groups, &found, error);
-    if (status != PLM_OK || !found) return status;
-    status = plm_sketch_tidy(sketch, error);
-    return status == PLM_OK ? find_groups_again(sketch, 1, groups, error) : status;
-}
-
-/* Prepares the groups of plants of leaves with petioles, so that each is one leaf. */
+/* Prepares the groups of plants of leaves with petioles, so that each is one leaf; they are found anew where leaves that noise makes
+ * round got blades, and by the costs that suit compound leaves. */
 static plm_status make_groups_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
 {
-    const bool is_simple = sketch->habit == PLM_HABIT_SIMPLE, is_compound = sketch->habit == PLM_HABIT_COMPOUND;
-    plm_status status = is_simple || is_compound ? find_round_leaves(sketch, groups, error) : PLM_OK;
+    const bool is_compound = sketch->habit == PLM_HABIT_COMPOUND;
+    if (sketch->habit != PLM_HABIT_SIMPLE && !is_compound) return PLM_OK;
+    bool found;
+    plm_status status = plm_round_leaves(sketch, groups, &found, error);
+    if (status == PLM_OK && found) status = plm_sketch_tidy(sketch, error);
+    if (status == PLM_OK && found) plm_sketch_mark_stem(sketch);
+    if (status == PLM_OK && (found || is_compound))
+        status = find_groups_again(sketch, is_compound ? LEAFLET_COST : 1, groups, error);
+    if (status != PLM_OK) return status;
     /* Where the stem's line ended early, its rest is one foot of several petioles. */
-    if (status == PLM_OK && is_simple) status = plm_side_groups_split(sketch, groups, error);
-    if (status != PLM_OK || !is_compound) return status;
-    status = find_groups_again(sketch, LEAFLET_COST, groups, error);
-    if (status == PLM_OK) status = plm_leaflet_stalks(sketch, LEAFLET_COST, groups, error);
+    if (!is_compound) return plm_side_groups_split(sketch, groups, error);
+    status = plm_leaflet_stalks(sketch, LEAFLET_COST, groups, error);
     return status == PLM_OK ? join_leaflets(sketch, groups, error) : status;
 }
 
