@@ -31,6 +31,10 @@ static const double NOISE_SCATTERS = 1.5;          /* ... this many as far as th
 static const double FARTHEST = 3.3;                /* more than margin and scatters can come to */
 static const double NEAR_SURFACE = 1.6;            /* points within so many radii tell the scatter */
 static const double END_CAP = 0.3;                 /* the stem's end rises so many radii above its last node */
+/* A tube of which less of the directions have points, over all the trunk, may be the wrong one: wider ones are tried, each by WIDER, and
+ * taken where more by GAINED have. (Three real maize of 17 gain 0.19 to 0.42, and so do the stems' labels: IoU 0.21 and 0.77, 0.38 and
+ * 0.59, 0.51 and 0.69. Of 28 others, real and virtual, none gains more than 0.08.) */
+static const double NOT_CLOSED = 0.7, GAINED = 0.15, WIDER = 1.6;
 enum {
     SECTORS = 12,
     PASSES = 5,
@@ -39,6 +43,7 @@ enum {
     BACK = 12,  /* the tube is followed from so many nodes below the last fork: its foot has drawn the line aside */
     LEVER = 16, /* nodes for the direction where it is followed */
     MISSED = 5, /* nodes without a tube that end it */
+    WIDER_TRIED = 3,
     MOST_BEYOND = 400,
     LEAST_NODES = 6,
     LEAST_POINTS = 8
@@ -340,6 +345,45 @@ static void find_tube(const plm_sketch *sketch, tube *t, size_t fork, size_t mos
     plm_stem_measure_along(&t->path);
 }
 
+/* Mean share of the directions in which the tube's circles have points, over the trunk. */
+static double trunk_closed(const tube *t, size_t fork)
+{
+    const size_t end = fork < t->path.count ? fork : t->path.count;
+    double sum = 0;
+    for (size_t n = 0; n < end; n++) sum += t->closed[n];
+    return sum / (double)fork;
+}
+
+/* The rough path's radius is that of the tubes which most balls saw. Where those are curled leaves the stem is wider, and no such circle
+ * closes. */
+static plm_status find_closed_tube(const plm_sketch *sketch, tube *t, size_t fork, size_t most, plm_error *error)
+{
+    find_tube(sketch, t, fork, most);
+    const double closed = trunk_closed(t, fork);
+    if (closed >= NOT_CLOSED) return PLM_OK;
+    double least = closed + GAINED, factor = WIDER;
+    plm_stem_path best = t->path;
+    plm_status status = PLM_OK;
+    for (int k = 0; k < WIDER_TRIED && status == PLM_OK; k++, factor *= WIDER) {
+        t->path = (plm_stem_path){0};
+        status = make_path(sketch, fork, most, &t->path, error);
+        if (status == PLM_OK) {
+            for (size_t n = 0; n < fork; n++) t->path.radius[n] *= factor;
+            find_tube(sketch, t, fork, most);
+            const double share = trunk_closed(t, fork);
+            if (share > least) {
+                const plm_stem_path worse = best;
+                best = t->path;
+                t->path = worse;
+                least = share;
+            }
+        }
+        plm_stem_path_free(&t->path);
+    }
+    t->path = best;
+    return status;
+}
+
 plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, double *shape, plm_error *error)
 {
     const size_t count = sketch->working.count, fork = trunk_nodes(sketch), most = fork + MOST_BEYOND;
@@ -357,8 +401,8 @@ plm_status plm_strap_stem(plm_sketch *sketch, size_t leaves, double *shape, plm_
     size_t *total = plm_scratch_take(&scratch, leaves + 1, sizeof *total);
     size_t *taken = plm_scratch_take(&scratch, leaves + 1, sizeof *taken);
     plm_status status = scratch.failed ? PLM_E_MEMORY : make_path(sketch, fork, most, &t.path, error);
+    if (status == PLM_OK) status = find_closed_tube(sketch, &t, fork, most, error);
     if (status == PLM_OK) {
-        find_tube(sketch, &t, fork, most);
         measure_offsets(&t, offset);
         mark(sketch, offset, surface_limit(&t, offset, shape), leaves, total, taken);
         const plm_stem_path rough = sketch->stem;

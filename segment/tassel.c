@@ -13,6 +13,9 @@
 enum { STRANDS = 4, STRAND_LEAST = 5 /* points */, OTHERS = 3 /* leaves whose widths tell */, SECOND = 2 };
 static const double STANDS_OUT = 0.1; /* of the leaf's length, beyond the fork: less is no strand */
 static const double THIN = 0.4;       /* width of a strand, of the other leaves' median width */
+/* The same, of the median width of all strands, at most: those of a tassel are alike. (A real one: 1.4; the narrow uppermost leaf of that
+ * maize, joined with it: 3.6.) */
+static const double ALIKE = 2.5;
 static const double MEAN = 0.5; /* the same over all strands and what they stand on: a torn rim has thin ends too */
 /* Where all its strands are thin: the share of the points that they hold at least. Of virtual tassels half and more, of a narrow
  * leaf with fringes a tenth. */
@@ -100,8 +103,10 @@ static plm_status find_strands(work *w, plm_error *error)
     const plm_merge_rule rule = {.distance = w->distance, .reach = w->reach, .apart = s->leaf, .least = STRAND_LEAST};
     const plm_status status = plm_merge_tree_by(&s->graph, &rule, w->branch, &w->strands, error);
     if (status != PLM_OK) return status;
+    const size_t most = w->strands > w->blades ? w->strands : w->blades;
     w->strand = plm_scratch_take(&w->scratch, w->strands + 1, sizeof *w->strand);
-    if (!w->strand) return PLM_E_MEMORY;
+    w->width = plm_scratch_take(&w->scratch, most + 1, sizeof *w->width);
+    if (!w->strand || !w->width) return PLM_E_MEMORY;
     for (size_t i = 0; i < s->working.count; i++) {
         if (w->branch[i] < 0) continue;
         strand *t = &w->strand[w->branch[i]];
@@ -115,15 +120,33 @@ static plm_status find_strands(work *w, plm_error *error)
     return PLM_OK;
 }
 
+static bool is_strand(const work *w, const strand *t, size_t leaf)
+{
+    return t->points && (size_t)t->leaf == leaf && t->tip - t->fork > STANDS_OUT * w->blade[leaf].length;
+}
+
+/* The width that no strand of a leaf is thin beyond: strands of a tassel are alike, and a narrow leaf that is joined with them is wider than
+ * they are. w->width: room for one a strand. */
+static double thin_limit(work *w, size_t leaf, double width)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < w->strands; k++)
+        if (is_strand(w, &w->strand[k], leaf))
+            w->width[count++] = (float)(w->strand[k].area / (w->strand[k].tip - w->strand[k].fork));
+    const double usual = count > STRANDS ? plm_quantile(w->width, count, 0.5) : INFINITY;
+    return fmin(THIN * width, ALIKE * usual);
+}
+
 /* Scraps that nothing joins with the rest of the leaf are no strands, however thin. */
 static void judge_strands(work *w, size_t leaf, double width)
 {
     blade *b = &w->blade[leaf];
+    const double limit = thin_limit(w, leaf, width);
     b->fork = b->wide_fork = INFINITY;
     for (size_t k = 0; k < w->strands; k++) {
         strand *t = &w->strand[k];
-        if (!t->points || (size_t)t->leaf != leaf || !(t->tip - t->fork > STANDS_OUT * b->length)) continue;
-        t->is_thin = t->area < THIN * width * (t->tip - t->fork);
+        if (!is_strand(w, t, leaf)) continue;
+        t->is_thin = t->area < limit * (t->tip - t->fork);
         float *fork = t->is_thin ? &b->fork : &b->wide_fork;
         *fork = fminf(*fork, t->fork);
         b->strands += t->tip - t->fork;
@@ -181,7 +204,6 @@ plm_status plm_strap_tassel(plm_sketch *sketch, const float *from_base, double *
     const size_t count = sketch->working.count;
     work w = {.sketch = sketch, .from_base = from_base, .foot = foot, .scratch = {.error = error}, .blades = *leaves};
     w.blade = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *w.blade);
-    w.width = plm_scratch_take(&w.scratch, w.blades + 1, sizeof *w.width);
     w.distance = plm_scratch_take(&w.scratch, count, sizeof *w.distance);
     w.reach = plm_scratch_take(&w.scratch, count, sizeof *w.reach);
     w.area = plm_scratch_take(&w.scratch, count, sizeof *w.area);

@@ -8,7 +8,8 @@
 REAL holds maize_pot (3D_Corn_Phenotype), maize_mvs and maize_scanner (Label3DMaize) and growth_series (TrackPlant3D) as
 published: rows of x y z label. The stem is the lowest label of a file, each other label one leaf (the tomatoes' stem class
 holds petioles and rachises too, so found petioles count as stem). The large maize of maize_mvs stand in pots, which the
-hand labels give to the stem or to a leaf: points called ground are left out. Prints for each plant the IoU of stem and of leaf, the
+hand labels give to the stem or to a leaf: points called ground are left out, and with them what is left of a leaf most of
+whose points are. Prints for each plant the IoU of stem and of leaf, the
 leaves' F1 at IoU 0.5, true and found counts, and the share of points called other; then means by set.
 """
 import glob
@@ -63,8 +64,10 @@ def score(real, run):
         label, found = np.loadtxt(path)[:, 3].astype(int), read_ply(result)
         if len(label) != len(found):
             raise ValueError(f"{plant}: {len(found)} labelled points, {len(label)} by hand")
-        lowest = label.min()
-        label, found = label[found["label"] != 4], found[found["label"] != 4]
+        lowest, ground = label.min(), found["label"] == 4
+        pots = [k for k in np.unique(label) if k != lowest and np.mean(ground[label == k]) > 0.5]
+        kept = ~ground & ~np.isin(label, pots)
+        label, found = label[kept], found[kept]
         is_stem = label == lowest
         stem = iou(is_stem, np.isin(found["label"], (1, 2)))
         leaf = iou(~is_stem, found["label"] == 3)

@@ -283,6 +283,60 @@ static void pots_seen_by_depth_cameras_are_whole(void **unused)
     }
 }
 
+typedef struct drawn {
+    plm_cloud cloud;
+    uint64_t state;
+} drawn;
+
+static void add_point(drawn *d, plm_label label, double x, double y, double z)
+{
+    const double place[3] = {x, y, z};
+    const size_t i = d->cloud.count++;
+    for (int a = 0; a < 3; a++) d->cloud.xyz[i][a] = (float)(place[a] + 2e-4 * (test_uniform(&d->state) - 0.5));
+    d->cloud.label[i] = (uint8_t)label;
+}
+
+/* Half of a pot, from the side that was photographed; what was made of the other side is a sheet from the rim down across the pot. */
+static void a_pot_of_which_half_is_made_up_is_one(void **unused)
+{
+    (void)unused;
+    enum { SOIL = 4000, WALL = 6000, SHEET = 3000, STEM = 1500, BLADE = 3000 };
+    static const double width = 0.14, depth = 0.15, height = 1;
+    plm_error error = {0};
+    drawn d = {.state = 7};
+    assert_ok(plm_cloud_create(SOIL + WALL + SHEET + STEM + 4 * BLADE, PLM_HAS_LABEL, &d.cloud, &error));
+    const size_t rows = d.cloud.count;
+    d.cloud.count = 0;
+    for (int k = 0; k < SOIL; k++) {
+        const double r = width * sqrt(test_uniform(&d.state)), way = 2 * PLM_PI * test_uniform(&d.state);
+        add_point(&d, PLM_LABEL_GROUND, r * cos(way), r * sin(way), 0);
+    }
+    for (int k = 0; k < WALL; k++) {
+        const double down = test_uniform(&d.state), way = 2 * PLM_PI * (0.05 + 0.6 * test_uniform(&d.state));
+        const double r = width * (1 - 0.2 * down);
+        add_point(&d, PLM_LABEL_GROUND, r * cos(way), r * sin(way), -depth * down);
+    }
+    for (int k = 0; k < SHEET; k++) {
+        const double down = test_uniform(&d.state), across = 1.6 * (test_uniform(&d.state) - 0.5);
+        add_point(&d, PLM_LABEL_GROUND, width * (0.75 - 1.2 * down),
+                  width * across * sqrt(1 - down * down) - 0.3 * width, -depth * (0.05 + 0.9 * down));
+    }
+    for (int k = 0; k < STEM; k++) {
+        const double way = 2 * PLM_PI * test_uniform(&d.state);
+        add_point(&d, PLM_LABEL_STEM, 0.01 * cos(way), 0.01 * sin(way), height * test_uniform(&d.state));
+    }
+    for (int leaf = 0; leaf < 4; leaf++)
+        for (int k = 0; k < BLADE; k++) {
+            const double along = test_uniform(&d.state), side = 0.04 * (test_uniform(&d.state) - 0.5) * (1 - along);
+            const double out = 0.01 + 0.4 * along, rise = 0.4 + 0.15 * leaf + 0.3 * along - 0.25 * along * along;
+            const double way = 1.3 + 2.6 * leaf;
+            add_point(&d, PLM_LABEL_LEAF, out * cos(way) - side * sin(way), out * sin(way) + side * cos(way), rise);
+        }
+    assert_true(d.cloud.count == rows);
+    assert_good(find(&d.cloud), "half a pot");
+    plm_cloud_free(&d.cloud);
+}
+
 static void colour_is_not_needed_and_not_trusted(void **unused)
 {
     (void)unused;
@@ -446,6 +500,7 @@ int main(void)
         cmocka_unit_test(the_rim_of_a_pot_leaves_no_points),
         cmocka_unit_test(the_inside_of_a_pot_is_its_own),
         cmocka_unit_test(pots_seen_by_depth_cameras_are_whole),
+        cmocka_unit_test(a_pot_of_which_half_is_made_up_is_one),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),
