@@ -5,12 +5,13 @@
 #include "segment/sketch.h"
 
 /** A leaf that stands on several feet, with long legs up to where they meet, is as many leaves: writes leaf of the legs,
- * -1 to what lies beyond their meeting and near the stem. from_base: distance of each point along the graph; beyond:
+ * -1 to what lies beyond their meeting and near the stem. One of the legs may go on in a leaf that has no foot of its own. from_base:
+ * distance of each point along the graph; branch: of each point, the leaf whose tip it was found to be of, -1; beyond:
  * out where any was taken apart, the points about a meeting and beyond it, for plm_strap_beyond. leaves: in and out, their number; foot: one a leaf,
  * with room for PLM_STRAP_FEET_MOST more; out, for each leaf that is new, the distance of its foot. Gives whether any was
  * taken apart. */
-plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, bool *beyond, double *foot, size_t *leaves,
-                          bool *apart, plm_error *error);
+plm_status plm_strap_feet(plm_sketch *sketch, const float *from_base, const int32_t *branch, bool *beyond, double *foot,
+                          size_t *leaves, bool *apart, plm_error *error);
 
 enum { PLM_STRAP_FEET_MOST = 64 };
 

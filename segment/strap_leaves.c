@@ -12,6 +12,7 @@
 #include "segment/tassel.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double REACH = 0.08;              /* a leaf reaches so far beyond the next fork, in sizes of the plant */
 static const double LEAST_SHARE = 0.005;       /* of the points that a leaf holds at least */
@@ -119,6 +120,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     bool *beyond = plm_scratch_take(&scratch, count, sizeof *beyond);
     int32_t *origin = plm_scratch_take(&scratch, count, sizeof *origin);
     bool *allowed = plm_scratch_take(&scratch, count, sizeof *allowed);
+    int32_t *branch = plm_scratch_take(&scratch, count, sizeof *branch);
     plm_status status = scratch.failed ? PLM_E_MEMORY : shorten_edges(sketch, error);
     if (status == PLM_OK) {
         const plm_walk walk = {.source = source, .source_count = base_points(sketch, source), .distance = distance};
@@ -127,6 +129,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
     if (status == PLM_OK)
         status = plm_merge_tree(&sketch->graph, distance, REACH * sketch->scale.size,
                                 (size_t)(LEAST_SHARE * (double)count), sketch->leaf, leaves, error);
+    if (status == PLM_OK) memcpy(branch, sketch->leaf, count * sizeof *branch);
     double *foot = NULL, shape = INFINITY;
     if (status == PLM_OK && !(foot = plm_alloc(*leaves + PLM_STRAP_FEET_MOST, sizeof *foot, error)))
         status = PLM_E_MEMORY;
@@ -144,7 +147,7 @@ plm_status plm_strap_leaves(plm_sketch *sketch, double **along, size_t *leaves, 
         status = mark_stem(sketch, distance, NULL, source, allowed, nearest, origin, error);
     }
     bool apart = false;
-    if (status == PLM_OK) status = plm_strap_feet(sketch, distance, beyond, foot, leaves, &apart, error);
+    if (status == PLM_OK) status = plm_strap_feet(sketch, distance, branch, beyond, foot, leaves, &apart, error);
     if (status == PLM_OK && apart)
         status = mark_stem(sketch, distance, beyond, source, allowed, nearest, origin, error);
     if (status == PLM_OK) status = plm_strap_border(sketch, shape, error);
