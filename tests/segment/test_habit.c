@@ -2,6 +2,7 @@
  * do not. */
 #include "support/test.h"
 
+#include "segment/habit.h"
 #include "support/segmented.h"
 
 #define DEPTH_CAMERA .scanner = PLM_SCANNER_RGBD, .points = 45000, .noise = 5e-4, .views = 12
@@ -207,6 +208,62 @@ static void what_noise_makes_wide_or_round_is_told_by_where_it_begins(void **unu
     }
 }
 
+/* What a plant of six leaves is taken for whose nine blades are long, in noise of a third of the stem's radius; feet: their radius over
+ * the stem's; tubes: share of what is off the stem that looks like them. Blades are of a soybean's leaflets that noise joined. */
+static plm_habit habit_of_long_blades(double feet, double tubes)
+{
+    enum { GROUPS = 6, BLADES = 9, POINTS = 200, ROWS = BLADES * POINTS + POINTS };
+    static const double R = 5e-3, LENGTH = 11.3, START = 20.9, AREA = 22;
+    static bool is_tube[ROWS], is_stem[ROWS];
+    static plm_tube_point point[ROWS];
+    static float distance[ROWS];
+    static int32_t blade[ROWS];
+    plm_side_group group[GROUPS] = {0};
+    double blade_area[BLADES];
+    plm_sketch sketch = {
+        .scale = {.radius = R, .stem_radius = R / 3, .noise = R / 9, .size = 76 * R, .has_tubes = true},
+        .is_tube = is_tube,
+        .is_stem = is_stem,
+        .point = point};
+    plm_side_groups groups = {.count = GROUPS,
+                              .group = group,
+                              .distance = distance,
+                              .blade = blade,
+                              .blade_count = BLADES,
+                              .blade_area = blade_area};
+    sketch.working.count = ROWS;
+    sketch.stem.count = 10;
+    for (size_t i = 0; i < ROWS; i++) {
+        const size_t b = i / POINTS, k = i % POINTS;
+        is_stem[i] = b == BLADES;
+        is_tube[i] = is_stem[i] || (double)k < tubes * POINTS;
+        point[i].radius = (float)(R / 3);
+        blade[i] = is_stem[i] ? -1 : (int32_t)b;
+        distance[i] = (float)(R * (START + LENGTH * (double)k / POINTS));
+    }
+    for (size_t b = 0; b < BLADES; b++) {
+        plm_side_group *g = &group[b % GROUPS];
+        blade_area[b] = AREA * R * R;
+        g->has_foot = true;
+        g->tube_share = 1;
+        g->tube_radius = feet * R / 3;
+        g->blade_area += AREA * R * R;
+        g->blades++;
+    }
+    plm_error error = {0};
+    plm_habit habit;
+    assert_ok(plm_habit_guess(&sketch, &groups, &habit, &error));
+    return habit;
+}
+
+static void joined_leaflets_on_slim_feet_are_no_straps(void **unused)
+{
+    (void)unused;
+    assert_int_equal(habit_of_long_blades(0.37, 0), PLM_HABIT_COMPOUND);
+    assert_int_equal(habit_of_long_blades(0.45, 0.15), PLM_HABIT_COMPOUND);
+    assert_int_equal(habit_of_long_blades(0.8, 0.35), PLM_HABIT_STRAP);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(many_blades_a_leaf_are_no_straps),
@@ -223,6 +280,7 @@ int main(void)
                                        cmocka_unit_test(blades_on_one_foot_are_leaflets),
                                        cmocka_unit_test(blades_on_long_rachises_are_no_straps),
                                        cmocka_unit_test(bare_branches_bear_no_leaves),
-                                       cmocka_unit_test(what_noise_makes_wide_or_round_is_told_by_where_it_begins)};
+                                       cmocka_unit_test(what_noise_makes_wide_or_round_is_told_by_where_it_begins),
+                                       cmocka_unit_test(joined_leaflets_on_slim_feet_are_no_straps)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
