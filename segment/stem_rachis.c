@@ -53,21 +53,29 @@ static double usual_rachis(const plm_side_groups *groups, double end, double pet
     return plm_quantile(value, count, 0.5);
 }
 
-/* The node between two arc lengths where the way most likely leaves the stem, 0: none. Leaflets may hide that a rachis is thin. */
-static size_t best_exit(const plm_stem_path *stem, double from, double to)
+/* How much says that the way leaves the stem at a node: 0 near its ends. */
+static double exit_evidence(const plm_stem_path *stem, size_t n)
+{
+    if (n < PLM_STEM_NEAR + MARGIN || n + PLM_STEM_NEAR + MARGIN >= stem->count) return 0;
+    double below[3], above[3];
+    const double before = plm_stem_look(stem, n, -1, below), beyond = plm_stem_look(stem, n, 1, above);
+    const double turn = acos(fmax(-1, fmin(1, plm_dot(below, above))));
+    return turn / BEND + fmax(1 - beyond / before, 0) / DROP;
+}
+
+/* The node between two arc lengths where the way most likely leaves the stem, 0: none. Leaflets may hide that a rachis is thin. is_peak:
+ * only where there is less evidence to both sides: near the first leaflet the way may turn into that. */
+static size_t best_exit(const plm_stem_path *stem, double from, double to, bool is_peak)
 {
     size_t best = 0;
     double most = EVIDENCE_LEAST;
     for (size_t n = PLM_STEM_NEAR + MARGIN; n + PLM_STEM_NEAR + MARGIN < stem->count; n++) {
         if (stem->along[n] < from || stem->along[n] > to) continue;
-        double below[3], above[3];
-        const double before = plm_stem_look(stem, n, -1, below), beyond = plm_stem_look(stem, n, 1, above);
-        const double turn = acos(fmax(-1, fmin(1, plm_dot(below, above))));
-        const double evidence = turn / BEND + fmax(1 - beyond / before, 0) / DROP;
-        if (evidence > most) {
-            most = evidence;
-            best = n;
-        }
+        const double evidence = exit_evidence(stem, n);
+        if (evidence <= most) continue;
+        if (is_peak && (exit_evidence(stem, n - 1) > evidence || exit_evidence(stem, n + 1) > evidence)) continue;
+        most = evidence;
+        best = n;
     }
     return best;
 }
@@ -165,7 +173,8 @@ plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *grou
     plm_free(value);
     if (!found) return PLM_OK;
     const double from = top.last - FORK_BEFORE * R;
-    size_t node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R);
-    if (!node) node = best_exit(&sketch->stem, from, top.lowest);
+    size_t node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, true);
+    if (!node) node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, false);
+    if (!node) node = best_exit(&sketch->stem, from, top.lowest, false);
     return node ? plm_stem_straighten(sketch, node, 0, done, error) : PLM_OK;
 }

@@ -245,6 +245,34 @@ static void leaflets_are_told_by_short_tubes_or_by_their_place(void **unused)
     assert_false(leaves_rachis(leaf, (const hanging[]){{100, 25, 1}, {105, 25, 1}}, 2)); /* with petioles */
 }
 
+/* Beyond the stem's end the way runs on in the petiole of the topmost leaf, and turns into a leaflet of that more sharply than it left the
+ * stem. */
+static void a_turn_into_a_leaflet_is_not_where_the_way_leaves_the_stem(void **unused)
+{
+    (void)unused;
+    plm_error error = {0};
+    fork *f = make_fork(0, 1.4e-3);
+    plm_stem_path *stem = &f->sketch.stem;
+    const double *end = stem->node[stem->count - 1], turned[3] = {sin(1.4), 0, cos(1.4)};
+    const double from[3] = {end[0], end[1], end[2]};
+    add_tube(f, from, turned, 0.015, 1.4e-3);
+    add_nodes(stem, from, turned, 0.015, 1.4e-3);
+    static const hanging hangs[] = {{20, 50, 3}, {35, 50, 3}, {50, 50, 3}, {121, 2, 1}, {124, 1, 2}};
+    plm_side_group group[5] = {{0}};
+    const plm_side_groups groups = {.count = 5, .group = group};
+    for (size_t g = 0; g < 5; g++)
+        group[g] = (plm_side_group){.has_foot = true,
+                                    .along = 1e-3 * hangs[g].along,
+                                    .blades = hangs[g].blades,
+                                    .tube_length = 1e-3 * hangs[g].tube};
+    bool done;
+    assert_ok(plm_stem_leave_rachis(&f->sketch, &groups, 0.135, 3e-3, &done, &error));
+    assert_true(done);
+    print_message("the stem ends at %.1f mm\n", 1e3 * stem->along[stem->count - 1]);
+    assert_true(stem->along[stem->count - 1] < 0.066);
+    assert_true(end_beside(f) < 3e-3);
+}
+
 /* A way that turns aside for 4 mm, and then back (out: false) or on. */
 static bool is_zigzag(bool back, size_t n)
 {
@@ -339,6 +367,7 @@ int main(void)
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
         cmocka_unit_test(leaflets_are_told_by_short_tubes_or_by_their_place),
+        cmocka_unit_test(a_turn_into_a_leaflet_is_not_where_the_way_leaves_the_stem),
         cmocka_unit_test(a_turn_that_is_undone_is_told),
         cmocka_unit_test(who_says_simple_gets_a_low_stem),
     };
