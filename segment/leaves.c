@@ -9,6 +9,7 @@
 #include "segment/scratch.h"
 #include "segment/side_groups.h"
 #include "segment/strap_leaves.h"
+#include "segment/tip_leaf.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -209,14 +210,16 @@ static plm_status find_groups(plm_sketch *sketch, plm_side_groups *groups, plm_e
     return status == PLM_OK && links ? find_groups_again(sketch, 1, groups, error) : status;
 }
 
-/* Prepares the groups of plants of leaves with petioles, so that each is one leaf; they are found anew where leaves that noise makes
- * round got blades, and by the costs that suit compound leaves. */
+/* Prepares the groups of plants of leaves with petioles, so that each is one leaf; they are found anew where leaves that look like
+ * tube got blades, and by the costs that suit compound leaves. */
 static plm_status make_groups_leaves(plm_sketch *sketch, plm_side_groups *groups, plm_error *error)
 {
     const bool is_compound = sketch->habit == PLM_HABIT_COMPOUND;
     if (sketch->habit != PLM_HABIT_SIMPLE && !is_compound) return PLM_OK;
-    bool found;
-    plm_status status = plm_round_leaves(sketch, groups, &found, error);
+    bool found = false, has_tip = false;
+    plm_status status = plm_tip_leaf(sketch, groups, &has_tip, error);
+    if (status == PLM_OK) status = plm_round_leaves(sketch, groups, &found, error);
+    found = found || has_tip;
     if (status == PLM_OK && found) status = plm_sketch_tidy(sketch, error);
     if (status == PLM_OK && found) plm_sketch_mark_stem(sketch);
     if (status == PLM_OK && (found || is_compound))
