@@ -56,8 +56,8 @@ static const double STRAP_START_WIDE = 0.33, STRAP_WIDE_NOISE = 0.25;
  * its stem is thick: its size in R over that elongation is 18.8 at least of 120 tomatoes and soybeans in noise of 0.15 and more, and
  * 9.8 to 15.2 of 14 maize of as many blades a leaf and an elongation of 1.9 and more (six of which nothing else tells). */
 static const double STRAP_JOINED_NOISE = 0.2, STRAP_JOINED = 1.6, STRAP_STOUT = 17;
-/* Feet that are no slimmer than the stem and leaves that look like tubes, the shares of both added, tell straps that noise joins: 0.79 and
- * more of fourteen virtual maize; a soybean whose leaflets noise joins, 0. */
+/* They show evidence of straps by slim feet, and blades that look like tubes: both shares together (0.79 and more of fourteen virtual maize; 0
+ * of a soybean whose leaflets noise joins). */
 static const double STRAP_JOINED_EVIDENCE = 0.4;
 /* Noise (at least a tenth of the stem's radius) may hide thick feet, slim ones and tubes. Then the blades' shape tells: those of
  * straps are long (squared length over area, both summed) and begin at the stem, or not far from it where most leaves have less
@@ -236,7 +236,7 @@ static bool are_on_rachises(const leaf_tally *tally, const blade_shape *shape, b
     return many && tally->most >= 3 && shape->start > ON_RACHISES;
 }
 
-/* Whether what passes for leaflets are straps that noise joins, on a stout plant. */
+/* Whether what passes for leaflets are straps that noise joins, on a stout plant. tubes: share of what is off the stem. */
 static bool are_joined_straps(const plm_sketch *sketch, const leaf_tally *tally, const blade_shape *shape, double tubes)
 {
     const plm_scale *scale = &sketch->scale;

@@ -22,6 +22,8 @@ static const double THICK_GROWTH = 1.1; /* of that radius to the next R, at most
 static const double NOISE_RADII = 10;   /* R in sigmas, at least: a noisier ball is round whatever it holds */
 static const double NOISE_WHOLE = 6;    /* the same in sigmas that are not cut by their ball (NOISE_BALL) */
 static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tells sigma: smaller ones cut the noise */
+/* ... and so do larger ones, up to this, where the next ball finds so much more (gaussians of a rosette: 5.2 sigmas and 1.5 times). */
+static const double NOISE_BALL_DOUBTFUL = 6.5, NOISE_GROWTH = 1.35;
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
 static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette; ... */
@@ -141,6 +143,15 @@ static int choose_radius(const trial *series, int trials)
     return chosen;
 }
 
+/* Whether the balls of a trial are too small to hold the noise. */
+static bool is_cut(const trial *series, int trials, int i)
+{
+    if (i + 1 >= trials) return false;
+    const double radius = series[i].radius, noise = series[i].flat_noise;
+    return radius < NOISE_BALL * noise ||
+           (radius < NOISE_BALL_DOUBTFUL * noise && series[i + 1].flat_noise > NOISE_GROWTH * noise);
+}
+
 plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale, plm_error *error)
 {
     if (count < SMALLEST_COUNT) return plm_fail(error, PLM_E_DEGENERATE, "%zu points are too few for organs", count);
@@ -163,7 +174,7 @@ plm_status plm_find_scale(const float (*xyz)[3], size_t count, plm_scale *scale,
     }
     const bool is_round = series[0].tube_length < peak || ring >= TUBE_RING * peak;
     int wide = 0;
-    while (wide + 1 < trials && series[wide].radius < NOISE_BALL * series[wide].flat_noise) wide++;
+    while (is_cut(series, trials, wide)) wide++;
     out.noise = series[wide].flat_noise;
     trial best = series[choose_radius(series, trials)];
     /* as far as the series goes: a plant of a few such balls shows no tubes in larger ones */

@@ -53,10 +53,10 @@ static double usual_rachis(const plm_side_groups *groups, double end, double pet
     return plm_quantile(value, count, 0.5);
 }
 
-/* How much says that the way leaves the stem at a node: 0 near its ends. */
+/* How much says that the way leaves the stem at a node: INFINITY near its ends, which do not tell. */
 static double exit_evidence(const plm_stem_path *stem, size_t n)
 {
-    if (n < PLM_STEM_NEAR + MARGIN || n + PLM_STEM_NEAR + MARGIN >= stem->count) return 0;
+    if (n < PLM_STEM_NEAR + MARGIN || n + PLM_STEM_NEAR + MARGIN >= stem->count) return INFINITY;
     double below[3], above[3];
     const double before = plm_stem_look(stem, n, -1, below), beyond = plm_stem_look(stem, n, 1, above);
     const double turn = acos(fmax(-1, fmin(1, plm_dot(below, above))));
@@ -64,7 +64,7 @@ static double exit_evidence(const plm_stem_path *stem, size_t n)
 }
 
 /* The node between two arc lengths where the way most likely leaves the stem, 0: none. Leaflets may hide that a rachis is thin. is_peak:
- * only where there is less evidence to both sides: near the first leaflet the way may turn into that. */
+ * only where there is no more evidence to either side: near the first leaflet the way may turn into that. */
 static size_t best_exit(const plm_stem_path *stem, double from, double to, bool is_peak)
 {
     size_t best = 0;
@@ -72,7 +72,7 @@ static size_t best_exit(const plm_stem_path *stem, double from, double to, bool 
     for (size_t n = PLM_STEM_NEAR + MARGIN; n + PLM_STEM_NEAR + MARGIN < stem->count; n++) {
         if (stem->along[n] < from || stem->along[n] > to) continue;
         const double evidence = exit_evidence(stem, n);
-        if (evidence <= most) continue;
+        if (!(evidence > most)) continue;
         if (is_peak && (exit_evidence(stem, n - 1) > evidence || exit_evidence(stem, n + 1) > evidence)) continue;
         most = evidence;
         best = n;

@@ -44,10 +44,27 @@ typedef struct knot {
     int32_t tip[PLM_STRAP_PIECES_MOST];
 } knot;
 
+/* Takes the legs out that are parts of the tip: where tips are known, their points are the tip's. */
+static void drop_inner_legs(const work *w, int32_t own, knot *k)
+{
+    size_t kept = 0;
+    for (size_t j = 0; j < k->legs; j++) {
+        size_t points = 0, inner = 0;
+        for (size_t i = 0; i < w->sketch->working.count; i++) {
+            if (w->legs.leg[i] != (int32_t)k->leg[j]) continue;
+            points++;
+            inner += w->branch[i] == own;
+        }
+        if (2 * inner < points) k->leg[kept++] = k->leg[j];
+    }
+    k->legs = kept;
+}
+
 static knot find_knot(const work *w, int32_t own, size_t leaves)
 {
     const plm_sketch *s = w->sketch;
     knot found = {.tips = 1, .tip = {own}};
+    /* where the tip is part of a leg, nothing lies beyond a meeting of legs */
     if (w->legs.tip[own] != UINT32_MAX && w->legs.leg[w->legs.tip[own]] >= 0) return found;
     for (size_t k = 0; k < w->legs.legs && found.legs < PLM_STRAP_PIECES_MOST; k++) {
         bool is_apart = s->leaf[w->legs.low[k]] == own && plm_strap_is_wide(&w->legs, k);
@@ -59,6 +76,7 @@ static knot find_knot(const work *w, int32_t own, size_t leaves)
     for (size_t k = 0; k < leaves && found.legs > 1 && found.tips < PLM_STRAP_PIECES_MOST; k++)
         if ((int32_t)k != own && !w->split[k] && plm_strap_has_no_foot(&w->legs, k) && do_touch(w, own, (int32_t)k))
             found.tip[found.tips++] = (int32_t)k;
+    if (found.tips > 1) drop_inner_legs(w, own, &found);
     return found;
 }
 
@@ -78,10 +96,11 @@ static void add_pieces(const work *w, const knot *k, plm_strap_piece *leg, plm_s
     for (size_t i = 0; i < s->working.count; i++) {
         if (s->leaf[i] < 0 || !isfinite(w->legs.upside[i])) continue;
         const double way = measure(w, i, place);
-        for (size_t j = 0; j < k->legs; j++)
+        const bool is_tip = w->branch[i] == s->leaf[i];
+        for (size_t j = 0; j < k->legs && !is_tip; j++)
             if (w->legs.leg[i] == (int32_t)k->leg[j]) plm_strap_piece_add(&leg[j], way, place);
-        for (size_t j = 0; j < k->tips; j++)
-            if (s->leaf[i] == k->tip[j] && w->branch[i] == k->tip[j]) plm_strap_piece_add(&tip[j], way, place);
+        for (size_t j = 0; j < k->tips && is_tip; j++)
+            if (s->leaf[i] == k->tip[j]) plm_strap_piece_add(&tip[j], way, place);
     }
 }
 
@@ -106,7 +125,7 @@ static void find_nearest(work *w, const knot *k, const plm_strap_arc *arc, const
     }
 }
 
-/* Which tip each leg of a knot goes on in, and what lies clearly on the way. */
+/* Which tip each leg of a knot goes on in, and, where each tip has one and all arcs are known, what lies clearly on the way. */
 static void match(work *w, const knot *k, int *tip_of_leg)
 {
     plm_strap_piece leg[PLM_STRAP_PIECES_MOST] = {0}, tip[PLM_STRAP_PIECES_MOST] = {0};
@@ -119,13 +138,14 @@ static void match(work *w, const knot *k, int *tip_of_leg)
         if (tip_of_leg[j] < 0 || !plm_strap_find_arc(&leg[j], &tip[tip_of_leg[j]], &arc[arcs])) continue;
         leaf[arcs++] = k->tip[tip_of_leg[j]];
     }
-    if (arcs > 1) find_nearest(w, k, arc, leaf, arcs);
+    if (arcs == k->legs && arcs == k->tips) find_nearest(w, k, arc, leaf, arcs);
 }
 
 /* The leaf of each leg of a knot: without other tips the first keeps the number. */
 static void name_knot(work *w, const knot *k, size_t most, double *foot, size_t *leaves)
 {
-    int tip_of_leg[PLM_STRAP_PIECES_MOST] = {0, -1, -1, -1, -1, -1};
+    int tip_of_leg[PLM_STRAP_PIECES_MOST];
+    for (size_t j = 0; j < k->legs; j++) tip_of_leg[j] = j ? -1 : 0;
     if (k->tips > 1) match(w, k, tip_of_leg);
     for (size_t j = 0; j < k->legs; j++) {
         const size_t leg = k->leg[j];
@@ -139,7 +159,7 @@ static void name_knot(work *w, const knot *k, size_t most, double *foot, size_t 
     }
 }
 
-/* The leaf of each leg. Where the tip is part of a leg, nothing lies beyond a meeting of legs. */
+/* Names the legs of all leaves, and gives whether any leaf is taken apart. */
 static bool name_legs(work *w, double *foot, size_t *leaves)
 {
     const size_t before = *leaves;

@@ -55,8 +55,8 @@ static void find_ends(plm_strap_legs *l, size_t leaves)
     }
 }
 
-/* value: room for one a leaf. */
-static void measure_legs(plm_strap_legs *l, size_t leaves, float *value)
+/* value, legs: room for one a leaf. Leaves of several legs, which may be joined, do not tell how wide one is. */
+static void measure_legs(plm_strap_legs *l, size_t leaves, float *value, size_t *legs)
 {
     const plm_sketch *s = l->sketch;
     for (size_t k = 0; k < leaves; k++) value[k] = 0;
@@ -69,8 +69,10 @@ static void measure_legs(plm_strap_legs *l, size_t leaves, float *value)
         l->width[leg]++;
     }
     for (size_t k = 0; k < l->legs; k++) l->width[k] = l->length[k] > 0 ? l->width[k] / l->length[k] : 0;
+    for (size_t k = 0; k < l->legs; k++) legs[l->sketch->leaf[l->low[k]]]++;
     size_t known = 0;
     for (size_t k = 0; k < leaves; k++) {
+        if (legs[k] > 1) continue;
         const float length = l->end[k] != UINT32_MAX ? l->upside[l->end[k]] - l->upside[l->tip[k]] : 0;
         if (length > 0) value[known++] = value[k] / length;
     }
@@ -83,6 +85,7 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
     const size_t count = sketch->working.count;
     float *reach = plm_scratch_take(scratch, count, sizeof *reach);
     float *value = plm_scratch_take(scratch, leaves + 1, sizeof *value);
+    size_t *legs_of = plm_scratch_take(scratch, leaves + 1, sizeof *legs_of);
     *legs = (plm_strap_legs){.sketch = sketch,
                              .upside = plm_scratch_take(scratch, count, sizeof *legs->upside),
                              .leg = plm_scratch_take(scratch, count, sizeof *legs->leg),
@@ -102,7 +105,7 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
     legs->width = plm_scratch_take(scratch, legs->legs + 1, sizeof *legs->width);
     if (scratch->failed) return PLM_E_MEMORY;
     find_ends(legs, leaves);
-    measure_legs(legs, leaves, value);
+    measure_legs(legs, leaves, value, legs_of);
     return PLM_OK;
 }
 

@@ -16,7 +16,7 @@ typedef struct plm_strap_legs {
     float *width;  /**< of each leg, its points over its length */
     uint32_t *tip; /**< of each leaf, its farthest point; UINT32_MAX: it has none */
     uint32_t *end; /**< of each leaf, the point nearest to the base; likewise */
-    double usual;  /**< median of the leaves' points over their lengths */
+    double usual;  /**< median of points over lengths of the leaves with one leg; 0: there are none */
 } plm_strap_legs;
 
 /** Finds the legs of sketch->leaf, from 0 to leaves. from_base: distance of each point along the graph. PLM_E_MEMORY. */
@@ -26,7 +26,7 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
 /** Whether a leg is as wide as one of a leaf, not of a part of its blade. */
 bool plm_strap_is_wide(const plm_strap_legs *legs, size_t leg);
 
-/** Whether two legs of a leaf are of two leaves, as wide as they are. */
+/** Whether two legs of a leaf, both wide, are of two leaves. */
 bool plm_strap_are_apart(const plm_strap_legs *legs, size_t a, size_t b);
 
 /** Whether a leaf ends off the stem, at a touch. */

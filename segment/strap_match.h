@@ -12,7 +12,7 @@ typedef struct plm_strap_piece {
     double squares;       /**< of the places */
 } plm_strap_piece;
 
-/** Adds a point: its way from the base and its place, both in sizes of the plant and from near its middle. */
+/** Adds a point: its way from the base and its place, both in sizes of the plant and from the stem's base. */
 void plm_strap_piece_add(plm_strap_piece *piece, double way, const double place[3]);
 
 enum { PLM_STRAP_PIECES_MOST = 6 };
@@ -22,7 +22,7 @@ typedef struct plm_strap_arc {
     double gain[3][3];
 } plm_strap_arc;
 
-/** The arc that two pieces lie on; false: their points are too few. */
+/** The arc that two pieces lie on, or one (b: NULL); false: their points are too few. */
 bool plm_strap_find_arc(const plm_strap_piece *a, const plm_strap_piece *b, plm_strap_arc *arc);
 
 /** Distance of a place from an arc, about such a way along it. */

@@ -133,7 +133,7 @@ static double thin_limit(work *w, size_t leaf, double width)
     for (size_t k = 0; k < w->strands; k++)
         if (is_strand(w, &w->strand[k], leaf))
             w->width[count++] = (float)(w->strand[k].area / (w->strand[k].tip - w->strand[k].fork));
-    const double usual = count > STRANDS ? plm_quantile(w->width, count, 0.5) : INFINITY;
+    const double usual = count > STRANDS /* so that a tassel is left */ ? plm_quantile(w->width, count, 0.5) : INFINITY;
     return fmin(THIN * width, ALIKE * usual);
 }
 

@@ -11,14 +11,16 @@
 /* In radii of the stem, beyond the last leaf's foot: so much may still be stem, and a leaf is longer than so much. (Stems end 3.3 beyond
  * it at most on 140 virtual plants in three modes; with a leaf on them 6.6 to 18.) */
 static const double REST = 1.5, LONG = 5;
-/* Three of four of a stem's points lie nearer to its line than so many radii (1.2; of such leaves 1.6 to 4.4), ... */
+/* Three of four of a stem's points lie nearer to its line than so many radii (1.2; of such leaves 1.6 to 4.4), also beside a bare twig in
+ * most of so many stretches of the way, ... */
 static const double WIDE = 1.4;
+enum { STRETCHES = 4, WIDE_LEAST = 3 };
 /* ... in noise of so much of its radius, at most: more makes rags about it. (0.07 to 0.18 of three young tomatoes.) */
 static const double CLEAR = 0.25;
-/* Of the points that the other leaves have, by their median, where there are so many. (0.17 to 0.31 of three young tomatoes; of stems that
+/* So large a share of the points that the other leaves have, by their median, where so many tell. (0.17 to 0.31 of three young tomatoes; of stems that
  * went astray 0.09 at most.) */
 static const double LARGE = 0.13;
-enum { OTHERS_LEAST = 2, NODES_LEAST = 4 };
+enum { OTHERS_LEAST = 2, NODES_LEAST = 4 /* that a path keeps */ };
 
 static double last_foot(const plm_side_groups *groups)
 {
@@ -41,22 +43,58 @@ static double usual_points(const plm_sketch *s, const plm_side_groups *groups, p
     return count < OTHERS_LEAST ? 0 : plm_quantile(value, count, 0.5);
 }
 
-/* Marks the points of the way from a place along it on, and of what hangs there without a blade; off: their distances from the way. Gives
- * their number. */
-static size_t mark_beyond(const plm_sketch *s, const plm_side_groups *groups, double along, bool *beyond, float *off)
+/* What lies on the way beyond a place along it, and hangs there without a blade. */
+typedef struct tip {
+    double along, end; /* from where to where on the way */
+    bool *beyond;      /* of each point */
+    float *off;        /* of those points, stretch by stretch: distance from the way */
+    size_t points, first[STRETCHES + 1];
+} tip;
+
+static int stretch_of(const tip *t, double along)
 {
-    size_t count = 0;
-    for (size_t i = 0; i < s->working.count; i++) {
+    const int stretch = (int)((along - t->along) / (t->end - t->along) * STRETCHES);
+    return stretch < 0 ? 0 : stretch < STRETCHES ? stretch : STRETCHES - 1;
+}
+
+static bool is_beyond(const plm_sketch *s, const plm_side_groups *groups, double along, size_t i, double place)
+{
+    if (s->is_stem[i]) return place > along;
+    const plm_side_group *group = s->group[i] < 0 ? NULL : &groups->group[s->group[i]];
+    return group && group->has_foot && !group->blades && group->along > along;
+}
+
+static void find_tip(const plm_sketch *s, const plm_side_groups *groups, tip *t, plm_scratch *scratch)
+{
+    const size_t count = s->working.count;
+    t->beyond = plm_scratch_take(scratch, count, sizeof *t->beyond);
+    t->off = plm_scratch_take(scratch, count, sizeof *t->off);
+    float *off = plm_scratch_take(scratch, count, sizeof *off);
+    int *stretch = plm_scratch_take(scratch, count, sizeof *stretch);
+    if (scratch->failed) return;
+    for (size_t i = 0; i < count; i++) {
         plm_stem_place place = {0};
-        const double distance = plm_stem_nearest(&s->stem, s->working.xyz[i], &place);
-        const plm_side_group *group = s->group[i] < 0 ? NULL : &groups->group[s->group[i]];
-        if (s->is_stem[i])
-            beyond[i] = place.along > along;
-        else
-            beyond[i] = group && group->has_foot && !group->blades && group->along > along;
-        if (beyond[i]) off[count++] = (float)distance;
+        off[i] = (float)plm_stem_nearest(&s->stem, s->working.xyz[i], &place);
+        stretch[i] = stretch_of(t, place.along);
+        t->beyond[i] = is_beyond(s, groups, t->along, i, place.along);
+        if (t->beyond[i]) t->points++, t->first[stretch[i] + 1]++;
     }
-    return count;
+    size_t next[STRETCHES];
+    for (int k = 0; k < STRETCHES; k++) {
+        t->first[k + 1] += t->first[k];
+        next[k] = t->first[k];
+    }
+    for (size_t i = 0; i < count; i++)
+        if (t->beyond[i]) t->off[next[stretch[i]]++] = off[i];
+}
+
+/* Whether it is wider than a stem of radius r along the way. */
+static bool is_wide(const tip *t, double r)
+{
+    int wide = 0;
+    for (int k = 0; k < STRETCHES; k++)
+        wide += plm_quantile(t->off + t->first[k], t->first[k + 1] - t->first[k], 0.75) > WIDE * r;
+    return wide >= WIDE_LEAST;
 }
 
 plm_status plm_tip_leaf(plm_sketch *sketch, const plm_side_groups *groups, bool *found, plm_error *error)
@@ -67,20 +105,17 @@ plm_status plm_tip_leaf(plm_sketch *sketch, const plm_side_groups *groups, bool 
     const double r = plm_stem_mean_radius(stem, 0, stem->count), last = last_foot(groups), along = last + REST * r;
     if (!(last > 0) || !(stem->along[stem->count - 1] - last > LONG * r)) return PLM_OK;
     if (!(sketch->scale.noise < CLEAR * r)) return PLM_OK;
-    const size_t count = sketch->working.count;
     plm_scratch scratch = {.error = error};
-    bool *beyond = plm_scratch_take(&scratch, count, sizeof *beyond);
-    float *off = plm_scratch_take(&scratch, count, sizeof *off);
+    tip t = {.along = along, .end = stem->along[stem->count - 1]};
     const double usual = usual_points(sketch, groups, &scratch);
+    if (!scratch.failed && usual > 0) find_tip(sketch, groups, &t, &scratch);
     if (!scratch.failed && usual > 0) {
-        const size_t points = mark_beyond(sketch, groups, along, beyond, off);
-        *found = (double)points > LARGE * usual && plm_quantile(off, points, 0.75) > WIDE * r;
+        const double least = fmax(LARGE * usual, plm_blade_least_points(sketch));
+        *found = (double)t.points > least && is_wide(&t, r);
     }
-    if (*found) {
-        for (size_t i = 0; i < count; i++)
-            if (beyond[i]) sketch->is_tube[i] = false;
-        while (stem->count > NODES_LEAST && stem->along[stem->count - 1] > along) stem->count--;
-    }
+    for (size_t i = 0; *found && i < sketch->working.count; i++)
+        if (t.beyond[i]) sketch->is_tube[i] = false;
+    while (*found && stem->count > NODES_LEAST && stem->along[stem->count - 1] > along) stem->count--;
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }

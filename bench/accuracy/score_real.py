@@ -8,8 +8,8 @@
 REAL holds maize_pot (3D_Corn_Phenotype), maize_mvs and maize_scanner (Label3DMaize) and growth_series (TrackPlant3D) as
 published: rows of x y z label. The stem is the lowest label of a file, each other label one leaf (the tomatoes' stem class
 holds petioles and rachises too, so found petioles count as stem). The large maize of maize_mvs stand in pots, which the
-hand labels give to the stem or to a leaf: points called ground are left out, and with them what is left of a leaf most of
-whose points are. Prints for each plant the IoU of stem and of leaf, the
+hand labels give to the stem or to a leaf: their last label is the pot. Points called ground are left out; the rest of a pot is neither
+stem nor a leaf, and a leaf that is made of it counts as found. Prints for each plant the IoU of stem and of leaf, the
 leaves' F1 at IoU 0.5, true and found counts, and the share of points called other; then means by set.
 """
 import glob
@@ -43,7 +43,7 @@ def convert(real, folder):
 
 
 def leaves_f1(true_leaf, found):
-    """true_leaf: number of the leaf, -1 for stem."""
+    """true_leaf: number of the leaf, -1 for what is none."""
     leaf = found["label"] == 3
     true_ids, found_ids = np.unique(true_leaf[true_leaf >= 0]), np.unique(found["organ"][leaf])
     matched = 0
@@ -64,14 +64,14 @@ def score(real, run):
         label, found = np.loadtxt(path)[:, 3].astype(int), read_ply(result)
         if len(label) != len(found):
             raise ValueError(f"{plant}: {len(found)} labelled points, {len(label)} by hand")
-        lowest, ground = label.min(), found["label"] == 4
-        pots = [k for k in np.unique(label) if k != lowest and np.mean(ground[label == k]) > 0.5]
-        kept = ~ground & ~np.isin(label, pots)
+        lowest, pot = label.min(), label.max() if kind == "maize_mvs" else None
+        kept = found["label"] != 4
         label, found = label[kept], found[kept]
         is_stem = label == lowest
         stem = iou(is_stem, np.isin(found["label"], (1, 2)))
-        leaf = iou(~is_stem, found["label"] == 3)
-        f1, true_count, found_count = leaves_f1(np.where(is_stem, -1, label), found)
+        is_leaf = ~is_stem & (label != pot)
+        leaf = iou(is_leaf, found["label"] == 3)
+        f1, true_count, found_count = leaves_f1(np.where(is_leaf, label, -1), found)
         other = 100 * np.mean(~np.isin(found["label"], (1, 2, 3)))
         print(f"{plant:46}{stem:7.3f}{leaf:7.3f}{f1:6.2f}  {true_count:6}/{found_count:<10}{other:8.2f}")
         means[kind].append((stem, leaf, f1, true_count == found_count, other))

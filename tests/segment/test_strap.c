@@ -175,6 +175,19 @@ static void long_blades_at_the_stem_are_straps_in_little_noise(void **unused)
     }
 }
 
+/* Two blades lie on each other between foot and tip: the tree had both tips, and gave one of them both feet. */
+static void blades_on_each_other_keep_their_middles(void **unused)
+{
+    (void)unused;
+    plm_habit habit;
+    const label_score score =
+        segmented_grown("maize", &(plm_plant_options){.seed = 78065},
+                        &(plm_scan_options){.scanner = PLM_SCANNER_RGBD, .seed = 78065, .noise = 5e-4}, &habit);
+    assert_int_equal(habit, PLM_HABIT_STRAP);
+    assert_int_equal(score.leaves_found, score.leaves);
+    assert_true(score.f1 == 1 && score.worst_leaf > 0.75);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
@@ -189,6 +202,7 @@ int main(void)
                                        cmocka_unit_test(round_straps_are_no_branches),
                                        cmocka_unit_test(blades_that_touch_for_long_are_two),
                                        cmocka_unit_test(long_blades_at_the_stem_are_straps),
-                                       cmocka_unit_test(long_blades_at_the_stem_are_straps_in_little_noise)};
+                                       cmocka_unit_test(long_blades_at_the_stem_are_straps_in_little_noise),
+                                       cmocka_unit_test(blades_on_each_other_keep_their_middles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

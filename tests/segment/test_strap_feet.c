@@ -137,18 +137,48 @@ static void a_slit_makes_no_two_leaves(void **unused)
     plm_error error = {0};
     start(&d);
     add_blade(&d, 0.1, 0.6, (const double[]){1.2, -0.75}, 0, 0.24, 0);
+    add_blade(&d, 0.3, 0.5, (const double[]){1.3, -0.5}, 0, 0, 1); /* tells how wide leaves are */
     finish(&d);
-    size_t leaves = 1;
-    double foot[1 + PLM_STRAP_FEET_MOST] = {INFINITY};
+    size_t leaves = 2;
+    double foot[2 + PLM_STRAP_FEET_MOST] = {INFINITY, INFINITY};
     bool apart = true;
     /* its margins begin at different heights */
     for (size_t i = 0; i < d.sketch.working.count; i++) {
-        const bool is_low = d.xyz[i][1] > 0 && d.xyz[i][0] < 0.1;
-        d.leaf[i] = d.branch[i] = d.truth[i] < 0 || is_low ? -1 : 0;
+        const bool is_low = d.truth[i] == 0 && d.xyz[i][1] > 0 && d.xyz[i][0] < 0.1;
+        d.leaf[i] = d.branch[i] = is_low ? -1 : d.truth[i];
     }
     assert_ok(plm_strap_feet(&d.sketch, d.distance, d.branch, d.beyond, foot, &leaves, &apart, &error));
     assert_false(apart);
-    assert_int_equal(leaves, 1);
+    assert_int_equal(leaves, 2);
+    free_drawing(&d);
+}
+
+/* Nothing else tells how wide leaves are. */
+static void two_legs_of_an_only_leaf_come_apart(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    plm_error error = {0};
+    start(&d);
+    add_blade(&d, 0.22, 0.6, (const double[]){0.81, -0.6}, 0, 0, 0);
+    add_blade(&d, 0.3, 0.55, (const double[]){0.75, -1.1}, 0.05, 0, 0);
+    finish(&d);
+    size_t leaves = 1;
+    double foot[1 + PLM_STRAP_FEET_MOST] = {INFINITY};
+    bool apart = false;
+    for (size_t i = 0; i < d.sketch.working.count; i++) d.leaf[i] = d.branch[i] = d.truth[i];
+    assert_ok(plm_strap_feet(&d.sketch, d.distance, d.branch, d.beyond, foot, &leaves, &apart, &error));
+    assert_true(apart);
+    assert_int_equal(leaves, 2);
+    size_t points[2] = {0};
+    for (size_t i = 0; i < d.sketch.working.count; i++)
+        if (d.leaf[i] >= 0) points[d.leaf[i]]++;
+    assert_true(points[0] > 500 && points[1] > 500);
+    leaves = 0; /* no leaf at all */
+    for (size_t i = 0; i < d.sketch.working.count; i++) d.leaf[i] = d.branch[i] = -1;
+    assert_ok(plm_strap_feet(&d.sketch, d.distance, d.branch, d.beyond, foot, &leaves, &apart, &error));
+    assert_false(apart);
+    assert_int_equal(leaves, 0);
     free_drawing(&d);
 }
 
@@ -212,9 +242,8 @@ static void pieces_without_points_match_nothing(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(legs_go_on_in_their_own_tips),
-        cmocka_unit_test(a_slit_makes_no_two_leaves),
-        cmocka_unit_test(feet_and_tips_of_arcs_are_matched),
+        cmocka_unit_test(legs_go_on_in_their_own_tips),        cmocka_unit_test(a_slit_makes_no_two_leaves),
+        cmocka_unit_test(two_legs_of_an_only_leaf_come_apart), cmocka_unit_test(feet_and_tips_of_arcs_are_matched),
         cmocka_unit_test(pieces_without_points_match_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -37,6 +37,7 @@ static void draw(drawing *d, double top)
     memset(d, 0, sizeof *d);
     plm_sketch *s = &d->sketch;
     s->working.xyz = d->xyz;
+    s->working.cell = 4e-4;
     s->is_tube = d->is_tube;
     s->is_stem = d->is_stem;
     s->group = d->group;
@@ -126,6 +127,16 @@ static void the_end_of_a_stem_is_none(void **unused)
     assert_stays(&d);
     draw(&d, TOP); /* hardly any points */
     add_upright_blade(&d, 60, 5e-3);
+    assert_stays(&d);
+    draw(&d, TOP); /* an internode and a bare twig */
+    add_tube(&d, 600);
+    for (int k = 0; k < 500; k++)
+        add_point(&d, RADIUS + 0.02 * test_uniform(&d.state), RADIUS * (test_uniform(&d.state) - 0.5),
+                  LAST + 6 * RADIUS, 2);
+    assert_stays(&d);
+    draw(&d, TOP); /* too small for a leaf of this plant */
+    add_upright_blade(&d, 300, 5e-3);
+    d.sketch.working.cell = 1e-4;
     assert_stays(&d);
     draw(&d, TOP); /* rags in noise */
     add_upright_blade(&d, 300, 5e-3);
