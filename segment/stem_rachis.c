@@ -24,6 +24,9 @@ static const double LEAFLET_BEFORE = 1.5; /* ... and rather leaves it this far b
 static const double BEND = 0.35;          /* turns (radians) and ... */
 static const double DROP = 0.25;          /* ... losses of radius that count as one unit of evidence */
 static const double EVIDENCE_LEAST = 0.8; /* less tells nothing */
+/* A peak of the evidence goes before what rises towards the leaflets if it is such a share of that. (0.92 of a soybean whose way turns
+ * into the first leaflet; 0.4 of one that leaves the stem just before it.) */
+static const double PEAK = 0.7;
 enum {
     COMPOUND_LEAST = 2,
     LEAFLETS_LEAST = 2,
@@ -173,8 +176,9 @@ plm_status plm_stem_leave_rachis(plm_sketch *sketch, const plm_side_groups *grou
     plm_free(value);
     if (!found) return PLM_OK;
     const double from = top.last - FORK_BEFORE * R;
-    size_t node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, true);
-    if (!node) node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, false);
+    size_t node = best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, false);
+    const size_t peak = node ? best_exit(&sketch->stem, from, top.lowest - LEAFLET_BEFORE * R, true) : 0;
+    if (peak && exit_evidence(&sketch->stem, peak) > PEAK * exit_evidence(&sketch->stem, node)) node = peak;
     if (!node) node = best_exit(&sketch->stem, from, top.lowest, false);
     return node ? plm_stem_straighten(sketch, node, 0, done, error) : PLM_OK;
 }
