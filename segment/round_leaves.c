@@ -2,7 +2,6 @@
  * branch does, and what hangs on the stem without a blade counts as a branch of it. */
 #include "segment/round_leaves.h"
 
-#include "cloud/order.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -19,7 +18,7 @@ static const float SURE = 0.9F;
 static const double UNSURE_SHARE = 0.25, FOOT = 1.6;
 
 typedef struct tally {
-    size_t points, unsure;
+    size_t unsure;
     bool is_leaf;
 } tally;
 
@@ -28,24 +27,15 @@ static bool is_unsure(const plm_sketch *sketch, const plm_side_groups *groups, s
     return sketch->is_tube[i] && sketch->tube[i] < SURE && groups->distance[i] > FOOT * sketch->scale.radius;
 }
 
-/* The least number of points of a leaf; INFINITY where too few groups have blades. value: scratch. */
-static double least_points(const plm_side_groups *groups, const tally *list, double *value)
-{
-    size_t count = 0;
-    for (size_t g = 0; g < groups->count; g++)
-        if (groups->group[g].has_foot && groups->group[g].blades) value[count++] = (double)list[g].points;
-    return count < OTHERS_LEAST ? INFINITY : LARGE * plm_order_median(value, count);
-}
-
 /* Whether any group is a leaf that noise makes round. */
-static bool judge(const plm_side_groups *groups, double least, tally *list)
+static bool judge(const plm_side_groups *groups, double least, const size_t *points, tally *list)
 {
     bool any = false;
     for (size_t g = 0; g < groups->count; g++) {
         const plm_side_group *group = &groups->group[g];
-        const double points = (double)list[g].points;
+        const double all = (double)points[g];
         list[g].is_leaf =
-            group->has_foot && !group->blades && points >= least && (double)list[g].unsure >= UNSURE_SHARE * points;
+            group->has_foot && !group->blades && all >= least && (double)list[g].unsure >= UNSURE_SHARE * all;
         any |= list[g].is_leaf;
     }
     return any;
@@ -57,14 +47,13 @@ plm_status plm_round_leaves(plm_sketch *sketch, const plm_side_groups *groups, b
     if (!(sketch->scale.noise > NOISY * sketch->scale.stem_radius)) return PLM_OK;
     plm_scratch scratch = {.error = error};
     tally *list = plm_scratch_take(&scratch, groups->count + 1, sizeof *list);
+    size_t *points = plm_scratch_take(&scratch, groups->count + 1, sizeof *points);
     double *value = plm_scratch_take(&scratch, groups->count + 1, sizeof *value);
     if (!scratch.failed) {
-        for (size_t i = 0; i < sketch->working.count; i++) {
-            if (sketch->group[i] < 0) continue;
-            list[sketch->group[i]].points++;
-            list[sketch->group[i]].unsure += is_unsure(sketch, groups, i);
-        }
-        *found = judge(groups, least_points(groups, list, value), list);
+        const double usual = plm_side_groups_usual_points(sketch, groups, OTHERS_LEAST, points, value);
+        for (size_t i = 0; i < sketch->working.count; i++)
+            if (sketch->group[i] >= 0) list[sketch->group[i]].unsure += is_unsure(sketch, groups, i);
+        *found = usual > 0 && judge(groups, LARGE * usual, points, list);
         for (size_t i = 0; i < sketch->working.count && *found; i++)
             if (sketch->group[i] >= 0 && list[sketch->group[i]].is_leaf && is_unsure(sketch, groups, i))
                 sketch->is_tube[i] = false;

@@ -2,6 +2,8 @@
  * nearest along the graph. So two leaves that touch far from the stem are still two; their border is moved to the touch. */
 #include "segment/side_groups.h"
 
+#include "cloud/order.h"
+
 #include "cloud/linear.h"
 #include "segment/blade_hills.h"
 #include "segment/core.h"
@@ -39,6 +41,17 @@ double plm_blade_least(const plm_sketch *sketch)
 double plm_blade_least_points(const plm_sketch *sketch)
 {
     return plm_blade_least(sketch) / (sketch->working.cell * sketch->working.cell);
+}
+
+double plm_side_groups_usual_points(const plm_sketch *sketch, const plm_side_groups *groups, size_t least,
+                                    size_t *points, double *value)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < sketch->working.count; i++)
+        if (sketch->group[i] >= 0) points[sketch->group[i]]++;
+    for (size_t g = 0; g < groups->count; g++)
+        if (groups->group[g].has_foot && groups->group[g].blades) value[count++] = (double)points[g];
+    return count < least ? 0 : plm_order_median(value, count);
 }
 
 void plm_side_groups_free(plm_side_groups *groups)

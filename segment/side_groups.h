@@ -38,6 +38,11 @@ plm_status plm_side_groups_split(plm_sketch *sketch, plm_side_groups *groups, pl
  * becomes blade. Writes sketch->group and is_tube. */
 plm_status plm_side_groups_young(plm_sketch *sketch, plm_side_groups *groups, plm_error *error);
 
+/** Median of the points of the groups that have a foot and a blade; 0: these are fewer than least. points, value: room for one a group, all 0
+ * before; points: out, of each group. */
+double plm_side_groups_usual_points(const plm_sketch *sketch, const plm_side_groups *groups, size_t least,
+                                    size_t *points, double *value);
+
 void plm_side_groups_free(plm_side_groups *groups);
 
 /** Blades smaller than this are no leaves. */

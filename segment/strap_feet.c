@@ -76,7 +76,10 @@ static knot find_knot(const work *w, int32_t own, size_t leaves)
     for (size_t k = 0; k < leaves && found.legs > 1 && found.tips < PLM_STRAP_PIECES_MOST; k++)
         if ((int32_t)k != own && !w->split[k] && plm_strap_has_no_foot(&w->legs, k) && do_touch(w, own, (int32_t)k))
             found.tip[found.tips++] = (int32_t)k;
-    if (found.tips > 1) drop_inner_legs(w, own, &found);
+    knot outer = found;
+    drop_inner_legs(w, own, &outer);
+    if (found.tips > 1 && outer.legs > 1) return outer;
+    found.tips = 1;
     return found;
 }
 
