@@ -462,17 +462,17 @@ int main(void)
         cmocka_unit_test(floaters_do_not_hold_one_another),
         cmocka_unit_test(a_cluster_of_floaters_goes_and_a_leaf_behind_a_gap_stays),
         cmocka_unit_test(thin_stems_and_sparse_regions_stay),
-        cmocka_unit_test(sparse_tips_are_no_floaters),
-        cmocka_unit_test(leaves_that_were_seen_seldom_are_leaves),
-        cmocka_unit_test(ground_is_no_part_of_what_is_kept),
-        cmocka_unit_test(a_scan_without_floaters_loses_nothing),
-        cmocka_unit_test(a_tip_or_a_foot_may_be_three_times_as_sparse),
+        plant_case(sparse_tips_are_no_floaters),
+        plant_case(leaves_that_were_seen_seldom_are_leaves),
+        plant_case(ground_is_no_part_of_what_is_kept),
+        plant_case(a_scan_without_floaters_loses_nothing),
+        plant_case(a_tip_or_a_foot_may_be_three_times_as_sparse),
         cmocka_unit_test(what_goes_on_in_the_plane_is_a_tip),
         cmocka_unit_test(voxel_means_are_told_in_boxes),
         cmocka_unit_test(ground_is_neither_judged_nor_counted),
-        cmocka_unit_test(rows_may_come_in_any_order),
+        plant_case(rows_may_come_in_any_order),
         cmocka_unit_test(few_or_coinciding_points_are_kept),
-        cmocka_unit_test(clouds_with_known_truth_lose_floaters_only),
+        plant_case(clouds_with_known_truth_lose_floaters_only),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -303,13 +303,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_the_caller_says_is_taken),
-        cmocka_unit_test(stems_and_pots_tell_any_axis),
+        plant_case(stems_and_pots_tell_any_axis),
         cmocka_unit_test(a_tilted_table_keeps_its_axis_until_it_is_another_frame),
         cmocka_unit_test(where_nothing_tells_z_is_up),
         cmocka_unit_test(the_signs_of_an_umbrella_are_known),
         cmocka_unit_test(a_gap_in_the_stem_does_not_shorten_ways),
-        cmocka_unit_test(virtual_plants_tell_any_axis),
-        cmocka_unit_test(clouds_with_known_truth_stand_up),
+        plant_case(virtual_plants_tell_any_axis),
+        plant_case(clouds_with_known_truth_stand_up),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

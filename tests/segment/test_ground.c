@@ -493,19 +493,19 @@ int main(void)
         cmocka_unit_test(soil_without_a_pot_is_found),
         cmocka_unit_test(a_rosette_over_the_rim_stays_a_plant),
         cmocka_unit_test(plants_without_ground_claim_none),
-        cmocka_unit_test(a_flat_rosette_is_no_ground),
-        cmocka_unit_test(leaves_are_no_ground_and_a_stem_no_pot),
-        cmocka_unit_test(bumps_of_soil_are_soil),
-        cmocka_unit_test(the_foot_of_a_rosette_holds_no_soil),
+        plant_case(a_flat_rosette_is_no_ground),
+        plant_case(leaves_are_no_ground_and_a_stem_no_pot),
+        plant_case(bumps_of_soil_are_soil),
+        plant_case(the_foot_of_a_rosette_holds_no_soil),
         cmocka_unit_test(the_rim_of_a_pot_leaves_no_points),
-        cmocka_unit_test(the_inside_of_a_pot_is_its_own),
-        cmocka_unit_test(pots_seen_by_depth_cameras_are_whole),
+        plant_case(the_inside_of_a_pot_is_its_own),
+        plant_case(pots_seen_by_depth_cameras_are_whole),
         cmocka_unit_test(a_pot_of_which_half_is_made_up_is_one),
         cmocka_unit_test(colour_is_not_needed_and_not_trusted),
         cmocka_unit_test(unit_place_tilt_and_order_change_nothing),
         cmocka_unit_test(clouds_without_shape_do_no_harm),
         cmocka_unit_test(height_and_none_do_as_they_say),
-        cmocka_unit_test(clouds_with_known_truth_keep_their_plants),
+        plant_case(clouds_with_known_truth_keep_their_plants),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

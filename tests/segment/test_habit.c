@@ -266,21 +266,21 @@ static void joined_leaflets_on_slim_feet_are_no_straps(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(many_blades_a_leaf_are_no_straps),
-                                       cmocka_unit_test(a_small_rosette_in_noise_keeps_its_leaves),
-                                       cmocka_unit_test(leaflets_broader_than_the_rachis_are_blade),
-                                       cmocka_unit_test(petioles_that_lean_on_each_other_bear_a_leaf_each),
-                                       cmocka_unit_test(the_youngest_leaf_of_a_rosette_counts),
-                                       cmocka_unit_test(a_way_up_petioles_is_no_stem),
-                                       cmocka_unit_test(short_petioles_make_no_single_leaf),
-                                       cmocka_unit_test(two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each),
-                                       cmocka_unit_test(petioles_that_lead_apart_bear_a_leaf_each),
-                                       cmocka_unit_test(wide_blades_on_thick_petioles_are_no_straps),
-                                       cmocka_unit_test(a_blade_in_which_a_strip_looks_like_a_tube_is_one_leaf),
-                                       cmocka_unit_test(blades_on_one_foot_are_leaflets),
-                                       cmocka_unit_test(blades_on_long_rachises_are_no_straps),
-                                       cmocka_unit_test(bare_branches_bear_no_leaves),
-                                       cmocka_unit_test(what_noise_makes_wide_or_round_is_told_by_where_it_begins),
+    const struct CMUnitTest tests[] = {plant_case(many_blades_a_leaf_are_no_straps),
+                                       plant_case(a_small_rosette_in_noise_keeps_its_leaves),
+                                       plant_case(leaflets_broader_than_the_rachis_are_blade),
+                                       plant_case(petioles_that_lean_on_each_other_bear_a_leaf_each),
+                                       plant_case(the_youngest_leaf_of_a_rosette_counts),
+                                       plant_case(a_way_up_petioles_is_no_stem),
+                                       plant_case(short_petioles_make_no_single_leaf),
+                                       plant_case(two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each),
+                                       plant_case(petioles_that_lead_apart_bear_a_leaf_each),
+                                       plant_case(wide_blades_on_thick_petioles_are_no_straps),
+                                       plant_case(a_blade_in_which_a_strip_looks_like_a_tube_is_one_leaf),
+                                       plant_case(blades_on_one_foot_are_leaflets),
+                                       plant_case(blades_on_long_rachises_are_no_straps),
+                                       plant_case(bare_branches_bear_no_leaves),
+                                       plant_case(what_noise_makes_wide_or_round_is_told_by_where_it_begins),
                                        cmocka_unit_test(joined_leaflets_on_slim_feet_are_no_straps)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

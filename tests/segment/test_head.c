@@ -249,11 +249,15 @@ static void a_stem_is_found_under_a_cone(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_head_falls_into_its_leaves),     cmocka_unit_test(thin_places_part_no_leaf),
-        cmocka_unit_test(a_sparse_head_has_no_tubes),       cmocka_unit_test(a_blurred_head_is_no_rosette),
-        cmocka_unit_test(folds_of_a_single_leaf_part_none), cmocka_unit_test(who_knows_better_is_asked),
-        cmocka_unit_test(clouds_without_sheets_do_no_harm), cmocka_unit_test(sheets_part_at_necks_and_gaps),
+        plant_case(a_head_falls_into_its_leaves),
+        plant_case(thin_places_part_no_leaf),
+        plant_case(a_sparse_head_has_no_tubes),
+        plant_case(a_blurred_head_is_no_rosette),
+        plant_case(folds_of_a_single_leaf_part_none),
+        plant_case(who_knows_better_is_asked),
+        cmocka_unit_test(clouds_without_sheets_do_no_harm),
+        cmocka_unit_test(sheets_part_at_necks_and_gaps),
         cmocka_unit_test(a_stem_is_found_under_a_cone),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

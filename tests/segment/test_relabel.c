@@ -470,15 +470,15 @@ int main(void)
         cmocka_unit_test(leaflets_called_tube_are_blade_behind_their_petiolules),
         cmocka_unit_test(leaflets_that_widen_at_once_begin_at_the_rachis),
         cmocka_unit_test(a_stump_at_the_foot_is_no_leaflet),
-        cmocka_unit_test(rachises_of_virtual_plants_are_found),
-        cmocka_unit_test(a_virtual_tomato_of_thick_rachises_is_compound),
-        cmocka_unit_test(leaflets_of_virtual_plants_are_found_in_noise),
-        cmocka_unit_test(the_rachis_of_a_young_leaf_is_no_wider_than_others),
-        cmocka_unit_test(a_small_last_leaflet_ends_a_rachis),
-        cmocka_unit_test(leaflets_at_the_stem_are_no_leaves),
-        cmocka_unit_test(the_rim_of_a_thinly_scanned_blade_is_no_rachis),
-        cmocka_unit_test(young_leaves_of_a_virtual_rosette_keep_their_blades),
-        cmocka_unit_test(the_outlines_of_a_rosettes_blades_tell_their_borders),
+        plant_case(rachises_of_virtual_plants_are_found),
+        plant_case(a_virtual_tomato_of_thick_rachises_is_compound),
+        plant_case(leaflets_of_virtual_plants_are_found_in_noise),
+        plant_case(the_rachis_of_a_young_leaf_is_no_wider_than_others),
+        plant_case(a_small_last_leaflet_ends_a_rachis),
+        plant_case(leaflets_at_the_stem_are_no_leaves),
+        plant_case(the_rim_of_a_thinly_scanned_blade_is_no_rachis),
+        plant_case(young_leaves_of_a_virtual_rosette_keep_their_blades),
+        plant_case(the_outlines_of_a_rosettes_blades_tell_their_borders),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

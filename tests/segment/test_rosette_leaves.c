@@ -122,13 +122,13 @@ static void scatter_between_blurred_petioles_parts_no_blades(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_way_along_a_steep_leaf_is_no_stem),
-        cmocka_unit_test(short_petioles_of_few_points_are_tubes),
-        cmocka_unit_test(petioles_no_wider_than_the_noise_are_tubes),
-        cmocka_unit_test(who_says_rosette_gets_its_leaves),
-        cmocka_unit_test(leaves_part_where_one_blade_begins_before_the_other),
-        cmocka_unit_test(narrow_blades_begin_where_wide_ones_do),
-        cmocka_unit_test(scatter_between_blurred_petioles_parts_no_blades),
+        plant_case(the_way_along_a_steep_leaf_is_no_stem),
+        plant_case(short_petioles_of_few_points_are_tubes),
+        plant_case(petioles_no_wider_than_the_noise_are_tubes),
+        plant_case(who_says_rosette_gets_its_leaves),
+        plant_case(leaves_part_where_one_blade_begins_before_the_other),
+        plant_case(narrow_blades_begin_where_wide_ones_do),
+        plant_case(scatter_between_blurred_petioles_parts_no_blades),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

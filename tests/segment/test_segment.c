@@ -294,14 +294,14 @@ static void clouds_without_structure_are_refused_or_bare(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(organs_of_a_simple_plant_are_found_and_numbered),
-        cmocka_unit_test(the_stem_ends_where_its_way_turns_into_the_last_petiole),
-        cmocka_unit_test(the_stem_goes_straight_on_where_a_stout_petiole_leaves_it),
-        cmocka_unit_test(organs_are_found_in_noise),
-        cmocka_unit_test(the_unit_does_not_matter),
-        cmocka_unit_test(the_order_of_rows_does_not_matter),
-        cmocka_unit_test(ground_and_noise_keep_their_labels),
+        plant_case(organs_of_a_simple_plant_are_found_and_numbered),
+        plant_case(the_stem_ends_where_its_way_turns_into_the_last_petiole),
+        plant_case(the_stem_goes_straight_on_where_a_stout_petiole_leaves_it),
+        plant_case(organs_are_found_in_noise),
+        plant_case(the_unit_does_not_matter),
+        plant_case(the_order_of_rows_does_not_matter),
+        plant_case(ground_and_noise_keep_their_labels),
         cmocka_unit_test(clouds_without_structure_are_refused_or_bare),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -355,21 +355,21 @@ static void who_says_simple_gets_a_low_stem(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(leaflets_at_the_end_of_the_way_are_no_leaves),
-        cmocka_unit_test(the_last_internode_is_no_petiole_of_a_young_leaf),
-        cmocka_unit_test(a_way_into_a_rachis_goes_back_to_the_stem),
-        cmocka_unit_test(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
-        cmocka_unit_test(a_turn_that_is_undone_leaves_no_stem),
-        cmocka_unit_test(a_way_that_turns_down_has_left_the_stem),
-        cmocka_unit_test(blades_together_far_beyond_the_leaves_are_leaflets),
-        cmocka_unit_test(a_turn_taken_into_a_rachis_is_taken_back),
-        cmocka_unit_test(a_stem_goes_on_below_a_gap),
+        plant_case(leaflets_at_the_end_of_the_way_are_no_leaves),
+        plant_case(the_last_internode_is_no_petiole_of_a_young_leaf),
+        plant_case(a_way_into_a_rachis_goes_back_to_the_stem),
+        plant_case(the_stem_ends_below_the_leaflets_of_its_topmost_leaf),
+        plant_case(a_turn_that_is_undone_leaves_no_stem),
+        plant_case(a_way_that_turns_down_has_left_the_stem),
+        plant_case(blades_together_far_beyond_the_leaves_are_leaflets),
+        plant_case(a_turn_taken_into_a_rachis_is_taken_back),
+        plant_case(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
         cmocka_unit_test(leaflets_are_told_by_short_tubes_or_by_their_place),
         cmocka_unit_test(a_turn_into_a_leaflet_is_not_where_the_way_leaves_the_stem),
         cmocka_unit_test(a_turn_that_is_undone_is_told),
-        cmocka_unit_test(who_says_simple_gets_a_low_stem),
+        plant_case(who_says_simple_gets_a_low_stem),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -190,19 +190,19 @@ static void blades_on_each_other_keep_their_middles(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_leaf_of_maize_is_found),
-                                       cmocka_unit_test(blades_that_touch_keep_their_feet),
-                                       cmocka_unit_test(a_tip_on_a_blade_is_a_leaf),
-                                       cmocka_unit_test(a_blade_goes_on_beyond_a_touch),
-                                       cmocka_unit_test(noise_joins_no_blades),
-                                       cmocka_unit_test(the_stem_of_maize_is_its_tube),
-                                       cmocka_unit_test(noise_makes_no_petioles_of_straps),
-                                       cmocka_unit_test(slimmer_feet_are_no_petioles),
-                                       cmocka_unit_test(noise_hides_no_foot_in_the_stem),
-                                       cmocka_unit_test(round_straps_are_no_branches),
-                                       cmocka_unit_test(blades_that_touch_for_long_are_two),
-                                       cmocka_unit_test(long_blades_at_the_stem_are_straps),
-                                       cmocka_unit_test(long_blades_at_the_stem_are_straps_in_little_noise),
-                                       cmocka_unit_test(blades_on_each_other_keep_their_middles)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {plant_case(every_leaf_of_maize_is_found),
+                                       plant_case(blades_that_touch_keep_their_feet),
+                                       plant_case(a_tip_on_a_blade_is_a_leaf),
+                                       plant_case(a_blade_goes_on_beyond_a_touch),
+                                       plant_case(noise_joins_no_blades),
+                                       plant_case(the_stem_of_maize_is_its_tube),
+                                       plant_case(noise_makes_no_petioles_of_straps),
+                                       plant_case(slimmer_feet_are_no_petioles),
+                                       plant_case(noise_hides_no_foot_in_the_stem),
+                                       plant_case(round_straps_are_no_branches),
+                                       plant_case(blades_that_touch_for_long_are_two),
+                                       plant_case(long_blades_at_the_stem_are_straps),
+                                       plant_case(long_blades_at_the_stem_are_straps_in_little_noise),
+                                       plant_case(blades_on_each_other_keep_their_middles)};
+    return run_cases(tests);
 }

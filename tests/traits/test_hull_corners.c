@@ -256,9 +256,11 @@ static void what_is_left_out_tells_no_end(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_is_rounder_than_its_points), cmocka_unit_test(rims_go_on_behind_their_points),
-        cmocka_unit_test(noise_is_no_part_of_rims),          cmocka_unit_test(noise_is_no_part_of_tips),
+        plant_case(a_ball_is_rounder_than_its_points),
+        plant_case(rims_go_on_behind_their_points),
+        plant_case(noise_is_no_part_of_rims),
+        plant_case(noise_is_no_part_of_tips),
         cmocka_unit_test(what_is_left_out_tells_no_end),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -239,15 +239,15 @@ static void a_compound_leafs_petiole_is_measured_before_its_first_leaflet(void *
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_stem_ends_at_its_tip_and_not_in_a_petiole),
-        cmocka_unit_test(torn_tips_are_no_rachis),
-        cmocka_unit_test(stations_are_as_long_as_gaps_between_points),
-        cmocka_unit_test(a_stem_that_tapers_goes_on_to_its_tip),
-        cmocka_unit_test(a_long_petiole_is_not_the_stem),
-        cmocka_unit_test(a_clean_petiole_begins_at_the_stems_surface),
-        cmocka_unit_test(a_sinus_ends_near_to_where_the_blade_widens),
-        cmocka_unit_test(a_compound_leafs_petiole_is_measured_before_its_first_leaflet),
-        cmocka_unit_test(a_noisy_foot_is_balanced_for_what_is_called_stem),
+        plant_case(the_stem_ends_at_its_tip_and_not_in_a_petiole),
+        plant_case(torn_tips_are_no_rachis),
+        plant_case(stations_are_as_long_as_gaps_between_points),
+        plant_case(a_stem_that_tapers_goes_on_to_its_tip),
+        plant_case(a_long_petiole_is_not_the_stem),
+        plant_case(a_clean_petiole_begins_at_the_stems_surface),
+        plant_case(a_sinus_ends_near_to_where_the_blade_widens),
+        plant_case(a_compound_leafs_petiole_is_measured_before_its_first_leaflet),
+        plant_case(a_noisy_foot_is_balanced_for_what_is_called_stem),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -369,14 +369,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(traits_of_a_plane_ellipse_are_those_that_were_built),
-        cmocka_unit_test(a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends),
+        plant_case(a_leaf_with_lobes_beside_its_petiole_begins_where_that_ends),
         cmocka_unit_test(a_petiole_of_a_few_points_has_an_end),
-        cmocka_unit_test(a_blunt_leaf_points_to_the_middle_of_its_end),
-        cmocka_unit_test(a_leaf_that_hangs_beside_itself_ends_at_its_tip),
+        plant_case(a_blunt_leaf_points_to_the_middle_of_its_end),
+        plant_case(a_leaf_that_hangs_beside_itself_ends_at_its_tip),
         cmocka_unit_test(a_blade_alone_has_area_but_no_length),
         cmocka_unit_test(leaves_of_a_rosette_point_away_from_where_petioles_meet),
-        cmocka_unit_test(the_error_of_an_arched_strap_tells_how_little_a_plane_is_determined),
-        cmocka_unit_test(virtual_plants_are_within_the_goals),
+        plant_case(the_error_of_an_arched_strap_tells_how_little_a_plane_is_determined),
+        plant_case(virtual_plants_are_within_the_goals),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

@@ -233,10 +233,10 @@ static void known_plants_are_measured_within_the_bounds(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ellipsoids_have_their_extents_hull_and_shadow),
+        plant_case(ellipsoids_have_their_extents_hull_and_shadow),
         cmocka_unit_test(hulls_hardly_depend_on_the_seed),
-        cmocka_unit_test(the_noise_of_dense_clouds_does_not_swell_a_plant),
-        cmocka_unit_test(known_plants_are_measured_within_the_bounds),
+        plant_case(the_noise_of_dense_clouds_does_not_swell_a_plant),
+        plant_case(known_plants_are_measured_within_the_bounds),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

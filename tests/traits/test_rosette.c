@@ -327,18 +327,18 @@ static void the_youngest_blades_are_whole(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_foot_is_as_low_as_it_was_seen),
-        cmocka_unit_test(petioles_tell_the_base_that_they_hide),
-        cmocka_unit_test(petioles_mend_what_is_guessed_of_the_base),
-        cmocka_unit_test(heights_of_splats_know_the_noise),
-        cmocka_unit_test(points_that_coincide_have_a_height),
-        cmocka_unit_test(soil_under_a_rosette_is_no_foot),
-        cmocka_unit_test(the_soil_about_a_rosette_tells_its_base),
-        cmocka_unit_test(petioles_that_are_hardly_seen_bear_leaves),
-        cmocka_unit_test(a_leaf_narrower_than_the_noise_is_level_across),
-        cmocka_unit_test(a_few_points_say_how_little_they_know),
-        cmocka_unit_test(petioles_of_a_rosette_begin_outside_of_its_crown),
-        cmocka_unit_test(the_youngest_blades_are_whole),
+        plant_case(the_foot_is_as_low_as_it_was_seen),
+        plant_case(petioles_tell_the_base_that_they_hide),
+        plant_case(petioles_mend_what_is_guessed_of_the_base),
+        plant_case(heights_of_splats_know_the_noise),
+        plant_case(points_that_coincide_have_a_height),
+        plant_case(soil_under_a_rosette_is_no_foot),
+        plant_case(the_soil_about_a_rosette_tells_its_base),
+        plant_case(petioles_that_are_hardly_seen_bear_leaves),
+        plant_case(a_leaf_narrower_than_the_noise_is_level_across),
+        plant_case(a_few_points_say_how_little_they_know),
+        plant_case(petioles_of_a_rosette_begin_outside_of_its_crown),
+        plant_case(the_youngest_blades_are_whole),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }

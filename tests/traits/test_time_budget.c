@@ -368,12 +368,12 @@ int main(void)
         cmocka_unit_test(small_clouds_are_looked_at_whole_and_then_time_is_left),
         cmocka_unit_test(where_only_the_plant_is_asked_for_all_time_is_the_plants),
         cmocka_unit_test(errors_that_no_longer_fall_draw_less_time),
-        cmocka_unit_test(what_there_is_no_time_for_is_left_out_with_that_reason),
+        plant_case(what_there_is_no_time_for_is_left_out_with_that_reason),
         cmocka_unit_test(a_deadline_that_has_passed_leaves_rows_without_values),
-        cmocka_unit_test(the_points_of_the_record_give_the_same_digits),
+        plant_case(the_points_of_the_record_give_the_same_digits),
         cmocka_unit_test(targets_are_read_in_the_traits_unit_or_in_percent),
         cmocka_unit_test(traits_of_organs_are_judged_by_the_median_organ),
-        cmocka_unit_test(a_target_ends_with_as_few_points_as_reach_it_or_with_all),
+        plant_case(a_target_ends_with_as_few_points_as_reach_it_or_with_all),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests);
 }
