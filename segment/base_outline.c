@@ -26,6 +26,8 @@ static const double ELSEWHERE = 0.03; /* density beside the leaf, of the blade's
 static const double FAINTEST = 0.1;   /* density of the petiole, of the blade's, at least, before voxels fill it */
 /* Weight of the thickness: midribs are thick for a while, and neighbours' heights are not independent. */
 static const double THICKNESS = 0.3;
+static const double THICKNESS_TELLS =
+    5;                             /* logarithm of how much likelier a change is than none, where nothing else tells */
 static const double SWOLLEN = 0.5; /* SDs of the noise by which an outline seems to lie outward */
 /* Outlines: half width of the blade over the way ahead; slope of a lobe's edge, and its curvature over R. */
 static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
@@ -104,9 +106,14 @@ static double half_width(const plm_base_view *view)
     return sqrt(widest);
 }
 
+double plm_base_own_scale(const plm_base_view *view)
+{
+    return half_width(view) / (COLUMNS * COLUMN);
+}
+
 bool plm_base_is_wide(const plm_base_view *view)
 {
-    return half_width(view) >= COLUMNS * COLUMN * view->scale;
+    return plm_base_own_scale(view) >= view->scale;
 }
 
 double plm_base_turn(const plm_base_view *view)
@@ -316,12 +323,18 @@ static void judge(const outline *o, const evidence *e, int k, plm_base_table *ta
     table->rest[k] = THICKNESS * plm_base_thickness(o->view, e->list, e->cumulated, e->heights, at) - log1p(off * off);
 }
 
+/* Place along the petiole of the first row that is tried. */
+static double first_row(const plm_base_view *view)
+{
+    return SEARCH_FROM * (STEP * view->scale) - BACK * view->scale;
+}
+
 /* Every COARSE-th row, then those between likely ones. */
 static void search(outline *o, const evidence *e, plm_base_table *table)
 {
     double any[OUTLINES], total[PLM_BASE_ROWS], best = -INFINITY;
     plm_base_any(any);
-    table->first = SEARCH_FROM * o->step - BACK * o->view->scale, table->step = o->step;
+    table->first = first_row(o->view), table->step = o->step;
     for (int s = 0; s < 2; s++) o->level[s] = compare(o, s, &o->image[0], SEARCH_FROM);
     for (int k = 0; k < PLM_BASE_ROWS; k++) table->rest[k] = total[k] = -INFINITY;
     for (int k = 0; k < PLM_BASE_ROWS; k += COARSE) {
@@ -363,6 +376,28 @@ plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_ta
             const evidence found = {list, cumulated, plm_base_heights(view, list, rest, cumulated), expected};
             search(o, &found, table);
             *told = true;
+        }
+    }
+    const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
+
+plm_status plm_base_look_at_thickness(const plm_base_view *view, plm_base_table *table, bool *told, plm_error *error)
+{
+    plm_scratch scratch = {.error = error};
+    plm_base_height *list = plm_scratch_take(&scratch, view->count + 1, sizeof *list);
+    double *rest = plm_scratch_take(&scratch, view->count + 1, sizeof *rest);
+    double *cumulated = plm_scratch_take(&scratch, view->count + 1, sizeof *cumulated);
+    *told = false;
+    const size_t heights = scratch.failed ? 0 : plm_base_heights(view, list, rest, cumulated);
+    if (heights) {
+        const double none = plm_base_thickness(view, list, cumulated, heights, INFINITY);
+        *table = (plm_base_table){.first = first_row(view), .step = STEP * view->scale};
+        for (int k = 0; k < PLM_BASE_ROWS; k++) {
+            const double at = table->first + k * table->step;
+            table->rest[k] = THICKNESS * (plm_base_thickness(view, list, cumulated, heights, at) - none);
+            if (table->rest[k] > THICKNESS_TELLS) *told = true;
         }
     }
     const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;

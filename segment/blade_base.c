@@ -27,6 +27,10 @@ static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines be
 static const double CLEAR_NOISE = 0.5;
 /* In R: a rosette's blades have no lobes beside the petiole that put the first guess farther off. Farther moves go to the tip. */
 static const double MOST_MOVE = 1;
+/* Of a small blade's reach: what is farther is blade wherever it begins. */
+static const double FAR_PART = 0.5;
+/* Before a small blade, which has no lobes beside it, all within so many of its radii is petiole. */
+static const double SMALL_STRIP = 3;
 /* In the edge of voxels whose means the points are: what edges are blurred by beside the noise across the blade. The noise of
  * depth cameras lies along their rays, which graze a blade more than they meet it, and views are a little off each other.
  * Junctions are right in the mean with it (131 petioles of 20 mm and more; without it 0.2 mm early, with 0.33 0.1 mm late).
@@ -120,15 +124,15 @@ static bool first_line(const leaf_points *leaf, const plm_scale *scale, uint32_t
     return true;
 }
 
-/* The blade's plane beyond the line's origin. false where little blade lies there, or it stands across the petiole. */
-static bool find_plane(const leaf_points *leaf, const plm_scale *scale, uint32_t *chosen, frame *f)
+/* The blade's plane by its points between two distances ahead of the line's origin. false where these are few, or it stands across
+ * the petiole. */
+static bool find_plane(const leaf_points *leaf, double from, double to, uint32_t *chosen, frame *f)
 {
-    const double R = scale->radius;
     double mean[3], vector[3][3], d[3];
     size_t count = 0;
     for (size_t i = leaf->petiole; i < leaf->count; i++) {
         offset_from(leaf->xyz[leaf->point[i]], f->origin, d);
-        if (plm_dot(d, f->along) > AHEAD * R && plm_dot(d, d) < PLANE * PLANE * R * R) chosen[count++] = leaf->point[i];
+        if (plm_dot(d, f->along) > from && plm_dot(d, d) < to * to) chosen[count++] = leaf->point[i];
     }
     if (count < FEWEST_PLANE) return false;
     principal(leaf, chosen, count, mean, vector);
@@ -227,9 +231,8 @@ static void turn_ahead(frame *f, double angle)
     }
 }
 
-/* A narrow blade lies straight ahead: f is turned to it. */
-static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, frame *f, double expected,
-                              plm_base_table *table, bool *told, plm_error *error)
+/* The leaf as it lies in a frame. place: the caller's, to be freed; NULL where there is no memory. */
+static plm_base_view view_in(const leaf_points *leaf, const plm_scale *scale, const frame *f, plm_error *error)
 {
     plm_base_view view = {.scale = scale->radius,
                           .radius = f->radius,
@@ -237,9 +240,17 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, f
                           .blur = plm_base_blur(scale->noise, leaf->is_rosettes ? 0 : scale->pitch),
                           .gathering = scale->gathering};
     view.place = plm_alloc(leaf->count, sizeof *view.place, error);
+    if (view.place) view.count = flatten_near(leaf, scale, f, view.place);
+    return view;
+}
+
+/* A narrow blade lies straight ahead: f is turned to it. */
+static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, bool is_small, frame *f, double expected,
+                              plm_base_table *table, bool *told, plm_error *error)
+{
+    plm_base_view view = view_in(leaf, scale, f, error);
     if (!view.place) return PLM_E_MEMORY;
-    view.count = flatten_near(leaf, scale, f, view.place);
-    const bool any = !leaf->is_rosettes || plm_base_is_wide(&view);
+    const bool any = !leaf->is_rosettes || is_small || plm_base_is_wide(&view);
     const double turn = any ? plm_base_turn(&view) : 0;
     if (turn != 0) {
         turn_ahead(f, turn);
@@ -253,9 +264,9 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, f
 
 /* Beyond the junction all is blade; before it, up to where the petiole ended, what lies about its line is petiole. */
 static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame *f, double old_end, double junction,
-                    const uint32_t *row, plm_segmentation *out)
+                    bool is_small, const uint32_t *row, plm_segmentation *out)
 {
-    const double R = scale->radius, strip = f->radius + 1.5 * scale->noise;
+    const double R = scale->radius, strip = (is_small ? SMALL_STRIP : 1) * f->radius + 1.5 * scale->noise;
     for (size_t i = 0; i < leaf->count; i++) {
         double place[3];
         flatten(f, leaf->xyz[leaf->point[i]], place);
@@ -264,7 +275,8 @@ static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame
         const uint8_t old = out->label[at];
         if (place[0] >= junction)
             out->label[at] = PLM_LABEL_LEAF;
-        else if (place[0] > old_end - AHEAD * R && fabs(place[1]) < strip && fabs(place[2]) < strip + scale->noise)
+        else if ((is_small || place[0] > old_end - AHEAD * R) && fabs(place[1]) < strip &&
+                 fabs(place[2]) < strip + scale->noise)
             out->label[at] = PLM_LABEL_PETIOLE;
         if (out->leaflet && out->label[at] != old)
             out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
@@ -274,38 +286,86 @@ static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame
 /** A leaf whose base was looked at: its points, the frame that it was flattened in, and what the outlines say there. */
 typedef struct base {
     leaf_points leaf;
+    plm_scale scale; /* of a small blade its own */
+    bool is_small;   /* told by outlines as small as it is */
+    bool is_guess;   /* the table is by thickness alone */
     frame frame;
     double moved;          /* the frame's origin, from the petiole's end by its labels */
     plm_base_table *table; /* NULL: it tells no border */
 } base;
 
-/* Looks at a leaf's base, in a second round with the petiole's line up to where the first one put the junction. */
-static plm_status look(const leaf_points *leaf, const plm_scale *scale, uint32_t *chosen, float *value, base *out,
-                       plm_error *error)
+/* Room for the points of a leaf. */
+typedef struct scratch_room {
+    uint32_t *chosen;
+    float *value;
+} scratch_room;
+
+/* Rounds of asking the outline, each with the petiole's line up to where the one before put the junction. */
+static plm_status ask_in_rounds(const scratch_room *room, base *b, plm_error *error)
 {
-    *out = (base){.leaf = *leaf};
-    if (leaf->petiole < FEWEST_PETIOLE || leaf->count - leaf->petiole < FEWEST_BLADE) return PLM_OK;
-    if (!first_line(leaf, scale, chosen, value, &out->frame)) return PLM_OK;
+    const leaf_points *leaf = &b->leaf;
+    const double R = b->scale.radius;
     double any[PLM_BASE_OUTLINES];
     plm_base_any(any);
     for (int round = 0; round < ROUNDS; round++) {
-        frame next = out->frame;
-        const double junction = round ? plm_base_mean(out->table, any) : 0, moved = out->moved + junction;
-        if (round && !next_line(leaf, scale, junction, chosen, &next)) break;
-        if (!find_plane(leaf, scale, chosen, &next)) break;
-        find_middle(leaf, scale, value, &next);
+        frame next = b->frame;
+        const double junction = b->table ? plm_base_mean(b->table, any) : 0, moved = b->moved + junction;
+        if (b->table && !next_line(leaf, &b->scale, junction, room->chosen, &next)) break;
+        if (!find_plane(leaf, AHEAD * R, PLANE * R, room->chosen, &next)) break;
+        find_middle(leaf, &b->scale, room->value, &next);
         plm_base_table *table = plm_alloc(1, sizeof *table, error);
         bool told = false;
-        const plm_status status = table ? ask_outline(leaf, scale, &next, -moved, table, &told, error) : PLM_E_MEMORY;
+        const plm_status status =
+            table ? ask_outline(leaf, &b->scale, b->is_small, &next, -moved, table, &told, error) : PLM_E_MEMORY;
         if (status != PLM_OK || !told) {
             plm_free(table);
             if (status != PLM_OK) return status;
             break;
         }
-        plm_free(out->table);
-        out->frame = next, out->moved = moved, out->table = table;
+        plm_free(b->table);
+        b->frame = next, b->moved = moved, b->table = table, b->is_guess = false;
     }
     return PLM_OK;
+}
+
+/* A rosette's small blade. The first guess may be as far off as the blade is long: thickness tells about where it begins, its far part
+ * its plane, and outlines as small as it is the border. */
+static plm_status look_at_small(const scratch_room *room, base *b, plm_error *error)
+{
+    const leaf_points *leaf = &b->leaf;
+    frame f = b->frame;
+    const double end =
+        end_along(leaf, leaf->point + leaf->petiole, leaf->count - leaf->petiole, f.origin, f.along, room->value);
+    if (!find_plane(leaf, FAR_PART * end, INFINITY, room->chosen, &f)) return PLM_OK;
+    find_middle(leaf, &b->scale, room->value, &f);
+    plm_base_view view = view_in(leaf, &b->scale, &f, error);
+    plm_base_table *guess = plm_alloc(1, sizeof *guess, error);
+    plm_status status = view.place && guess ? PLM_OK : PLM_E_MEMORY;
+    bool told = false;
+    const bool small = status == PLM_OK && !plm_base_is_wide(&view) && !plm_base_is_noisy(&view);
+    if (small) status = plm_base_look_at_thickness(&view, guess, &told, error);
+    if (told) {
+        b->is_small = b->is_guess = true, b->frame = f, b->table = guess;
+        b->scale.radius = plm_base_own_scale(&view);
+        status = ask_in_rounds(room, b, error);
+        if (b->is_guess) {
+            plm_free(b->table);
+            b->table = NULL;
+        }
+    } else
+        plm_free(guess);
+    plm_free(view.place);
+    return status;
+}
+
+static plm_status look(const leaf_points *leaf, const plm_scale *scale, const scratch_room *room, base *out,
+                       plm_error *error)
+{
+    *out = (base){.leaf = *leaf, .scale = *scale};
+    if (leaf->petiole < FEWEST_PETIOLE || leaf->count - leaf->petiole < FEWEST_BLADE) return PLM_OK;
+    if (!first_line(leaf, scale, room->chosen, room->value, &out->frame)) return PLM_OK;
+    const plm_status status = ask_in_rounds(room, out, error);
+    return status == PLM_OK && !out->table && leaf->is_rosettes ? look_at_small(room, out, error) : status;
 }
 
 /* Moves the borders of all leaves to where the outlines of all put them; a rosette's leaves of different ages begin unlike. */
@@ -317,7 +377,7 @@ static void set_borders(const base *list, size_t count, const plm_base_table *co
     for (size_t i = 0; i < count; i++) {
         const double junction = plm_base_mean(table[i], share), moved = list[i].moved;
         if (list[i].leaf.is_rosettes && moved + junction > MOST_MOVE * scale->radius) continue;
-        relabel(&list[i].leaf, scale, &list[i].frame, -moved, junction, row, out);
+        relabel(&list[i].leaf, &list[i].scale, &list[i].frame, -moved, junction, list[i].is_small, row, out);
     }
 }
 
@@ -371,7 +431,7 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
     for (size_t leaf = 0; leaf < simple && status == PLM_OK; leaf++) {
         const uint32_t begin = leaf ? first[2 * leaf - 1] : 0, middle = first[2 * leaf], end = first[2 * leaf + 1];
         const leaf_points points = {xyz, point + begin, end - begin, middle - begin, is_rosette};
-        status = look(&points, scale, chosen, value, &list[number], error);
+        status = look(&points, scale, &(scratch_room){chosen, value}, &list[number], error);
         table[number] = list[number].table;
         number += table[number] != NULL;
     }

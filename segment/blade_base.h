@@ -14,8 +14,8 @@ size_t plm_simple_leaves(const uint32_t *row, size_t count, const plm_segmentati
 /** Moves the border between petiole and leaf, in the labels of the plant's points, to where the outline of the blade says
  * that it begins; the leaflet numbers follow. xyz: count points; row[i]: where point i is in out. Only
  * plm_simple_leaves are looked at. Leaves without petiole, and those whose points tell no
- * border, stay as they are; of a rosette also those whose blades are too small for an outline or would begin far
- * towards the tip from where they were thought to, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
+ * border, stay as they are; of a rosette also those whose blades would begin far towards the tip from where they were thought to,
+ * small ones in noise, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                            plm_segmentation *out, plm_error *error);
 
@@ -50,6 +50,10 @@ typedef struct plm_base_table {
 plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_table *table, bool *told,
                          plm_error *error);
 
+/** Fills the table by thickness alone, which tells of a petiole's end at any width of the blade. told: false where it tells no place
+ * clearly, or there is noise. PLM_E_MEMORY. */
+plm_status plm_base_look_at_thickness(const plm_base_view *view, plm_base_table *table, bool *told, plm_error *error);
+
 /** Shares of the outlines when nothing is known of them. */
 void plm_base_any(double share[PLM_BASE_OUTLINES]);
 
@@ -68,6 +72,9 @@ double plm_base_mean(const plm_base_table *table, const double share[PLM_BASE_OU
 /** Whether the blade reaches to the sides of all that is compared with outlines. A smaller one ends within it, and an outline,
  * which knows no tip, would put its base where it ends. */
 bool plm_base_is_wide(const plm_base_view *view);
+
+/** The largest R by which the blade would be wide. */
+double plm_base_own_scale(const plm_base_view *view);
 
 /** Whether the noise is wide against the petiole, so that thickness tells nothing and its line is known badly. */
 bool plm_base_is_noisy(const plm_base_view *view);

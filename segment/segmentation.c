@@ -193,7 +193,9 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
     if (status != PLM_OK) return status;
     if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))
         return rosette_petioles(xyz, row, count, sketch, out, error);
-    return plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    if (status != PLM_OK || sketch->habit != PLM_HABIT_ROSETTE || sketch->scale.pitch > 0) return status;
+    return plm_rosette_pieces(xyz, row, count, out, error);
 }
 
 plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool *keep,
