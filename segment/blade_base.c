@@ -1,7 +1,7 @@
 /* segment/blade_base.c: the border between a petiole and its blade at all points of the plant. The stages before find it on
  * the sketch, by widths of level sets, to a few steps; here the leaf about that place is flattened, the outline of its base
  * tells the border (base_outline.c), the petiole's line is taken up to there, and the outline is asked once more, now as the plant's
- * leaves have it (base_shares.c). */
+ * leaves have it (base_shares.c). A rosette's small blades are looked at by outlines as small as they are (look_at_small). */
 #include "segment/blade_base.h"
 
 #include "cloud/linear.h"
@@ -31,6 +31,9 @@ static const double MOST_MOVE = 1;
 static const double FAR_PART = 0.5;
 /* Before a small blade, which has no lobes beside it, all within so many of its radii is petiole. */
 static const double SMALL_STRIP = 3;
+/* Of a small blade: blur, in its petiole's radii, at least (a tube is densest at its sides, and its middle is known to less than that), and
+ * cosine of petiole and blade, at least (where it bends between them, heights have a course that no cubic follows). */
+static const double SMALL_BLUR = 0.3, SMALL_LEVEL = 0.8;
 /* In the edge of voxels whose means the points are: what edges are blurred by beside the noise across the blade. The noise of
  * depth cameras lies along their rays, which graze a blade more than they meet it, and views are a little off each other.
  * Junctions are right in the mean with it (131 petioles of 20 mm and more; without it 0.2 mm early, with 0.33 0.1 mm late).
@@ -42,7 +45,7 @@ typedef struct leaf_points {
     const float (*xyz)[3];
     const uint32_t *point; /* the leaf's points, ... */
     size_t count, petiole; /* ... those of its petiole first */
-    bool is_rosettes;      /* small blades stay as they are */
+    bool is_rosettes;      /* small blades are looked at apart */
 } leaf_points;
 
 /* The petiole's line at its end, and the blade's plane beyond. */
@@ -250,6 +253,7 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, b
 {
     plm_base_view view = view_in(leaf, scale, f, error);
     if (!view.place) return PLM_E_MEMORY;
+    if (is_small) view.blur = fmax(view.blur, SMALL_BLUR * f->radius);
     const bool any = !leaf->is_rosettes || is_small || plm_base_is_wide(&view);
     const double turn = any ? plm_base_turn(&view) : 0;
     if (turn != 0) {
@@ -262,7 +266,8 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, b
     return status;
 }
 
-/* Beyond the junction all is blade; before it, up to where the petiole ended, what lies about its line is petiole. */
+/* Beyond the junction all is blade; before it, up to where the petiole ended (beside a small blade anywhere), what lies about its line is
+ * petiole. */
 static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame *f, double old_end, double junction,
                     bool is_small, const uint32_t *row, plm_segmentation *out)
 {
@@ -289,6 +294,8 @@ typedef struct base {
     plm_scale scale; /* of a small blade its own */
     bool is_small;   /* told by outlines as small as it is */
     bool is_guess;   /* the table is by thickness alone */
+    double guess;    /* where that has the junction, from the petiole's end by its labels */
+    double most;     /* how far from there towards the tip it can be */
     frame frame;
     double moved;          /* the frame's origin, from the petiole's end by its labels */
     plm_base_table *table; /* NULL: it tells no border */
@@ -337,6 +344,7 @@ static plm_status look_at_small(const scratch_room *room, base *b, plm_error *er
     const double end =
         end_along(leaf, leaf->point + leaf->petiole, leaf->count - leaf->petiole, f.origin, f.along, room->value);
     if (!find_plane(leaf, FAR_PART * end, INFINITY, room->chosen, &f)) return PLM_OK;
+    if (plm_dot(f.along, f.ahead) < SMALL_LEVEL) return PLM_OK;
     find_middle(leaf, &b->scale, room->value, &f);
     plm_base_view view = view_in(leaf, &b->scale, &f, error);
     plm_base_table *guess = plm_alloc(1, sizeof *guess, error);
@@ -347,6 +355,10 @@ static plm_status look_at_small(const scratch_room *room, base *b, plm_error *er
     if (told) {
         b->is_small = b->is_guess = true, b->frame = f, b->table = guess;
         b->scale.radius = plm_base_own_scale(&view);
+        double any[PLM_BASE_OUTLINES];
+        plm_base_any(any);
+        b->guess = plm_base_mean(guess, any);
+        b->most = FAR_PART * end;
         status = ask_in_rounds(room, b, error);
         if (b->is_guess) {
             plm_free(b->table);
@@ -361,7 +373,7 @@ static plm_status look_at_small(const scratch_room *room, base *b, plm_error *er
 static plm_status look(const leaf_points *leaf, const plm_scale *scale, const scratch_room *room, base *out,
                        plm_error *error)
 {
-    *out = (base){.leaf = *leaf, .scale = *scale};
+    *out = (base){.leaf = *leaf, .scale = *scale, .most = leaf->is_rosettes ? MOST_MOVE * scale->radius : INFINITY};
     if (leaf->petiole < FEWEST_PETIOLE || leaf->count - leaf->petiole < FEWEST_BLADE) return PLM_OK;
     if (!first_line(leaf, scale, room->chosen, room->value, &out->frame)) return PLM_OK;
     const plm_status status = ask_in_rounds(room, out, error);
@@ -369,14 +381,17 @@ static plm_status look(const leaf_points *leaf, const plm_scale *scale, const sc
 }
 
 /* Moves the borders of all leaves to where the outlines of all put them; a rosette's leaves of different ages begin unlike. */
-static void set_borders(const base *list, size_t count, const plm_base_table *const *table, const plm_scale *scale,
-                        const uint32_t *row, plm_segmentation *out)
+static void set_borders(const base *list, size_t count, const plm_base_table *const *table, const uint32_t *row,
+                        plm_segmentation *out)
 {
     double share[PLM_BASE_OUTLINES];
     plm_base_shares(table, list->leaf.is_rosettes ? 0 : count, share);
     for (size_t i = 0; i < count; i++) {
-        const double junction = plm_base_mean(table[i], share), moved = list[i].moved;
-        if (list[i].leaf.is_rosettes && moved + junction > MOST_MOVE * scale->radius) continue;
+        const double moved = list[i].moved;
+        double junction = plm_base_mean(table[i], share);
+        /* What is thin is no petiole: outlines of few points may put the border beyond. */
+        if (list[i].is_small) junction = fmin(junction, list[i].guess - moved);
+        if (moved + junction > list[i].most) continue;
         relabel(&list[i].leaf, &list[i].scale, &list[i].frame, -moved, junction, list[i].is_small, row, out);
     }
 }
@@ -435,7 +450,7 @@ plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t co
         table[number] = list[number].table;
         number += table[number] != NULL;
     }
-    if (status == PLM_OK) set_borders(list, number, table, scale, row, out);
+    if (status == PLM_OK) set_borders(list, number, table, row, out);
     for (size_t i = 0; i < number; i++) plm_free(list[i].table);
     plm_scratch_free(&scratch, NULL);
     return status;

@@ -15,7 +15,7 @@ size_t plm_simple_leaves(const uint32_t *row, size_t count, const plm_segmentati
  * that it begins; the leaflet numbers follow. xyz: count points; row[i]: where point i is in out. Only
  * plm_simple_leaves are looked at. Leaves without petiole, and those whose points tell no
  * border, stay as they are; of a rosette also those whose blades would begin far towards the tip from where they were thought to,
- * small ones in noise, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
+ * small ones that lean on their petioles, are hardly wider than these or are in noise, and all where the noise hides the petioles' width. PLM_E_MEMORY. */
 plm_status plm_blade_bases(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_scale *scale,
                            plm_segmentation *out, plm_error *error);
 
@@ -73,7 +73,7 @@ double plm_base_mean(const plm_base_table *table, const double share[PLM_BASE_OU
  * which knows no tip, would put its base where it ends. */
 bool plm_base_is_wide(const plm_base_view *view);
 
-/** The largest R by which the blade would be wide. */
+/** The R by which a blade as wide as this one, as seen at the view's scale, would just be wide. */
 double plm_base_own_scale(const plm_base_view *view);
 
 /** Whether the noise is wide against the petiole, so that thickness tells nothing and its line is known badly. */

@@ -176,10 +176,7 @@ static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, s
     const double middle[3] = {at[0], at[1], at[2]};
     status = plm_rosette_petioles(xyz, row, count, middle, out, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
-    if (status == PLM_OK) status = plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error);
-    /* Of voxel means it is ghosts that lie apart, and these are of no organ. */
-    if (status != PLM_OK || sketch->scale.pitch > 0) return status;
-    return plm_rosette_pieces(xyz, row, count, out, error);
+    return status == PLM_OK ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
 }
 
 /* Petioles, told at all points. Those of a rosette have no stem that hides their feet. */
@@ -192,8 +189,10 @@ static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, si
     status = find_voxels(xyz, count, &sketch->scale, error);
     if (status != PLM_OK) return status;
     if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))
-        return rosette_petioles(xyz, row, count, sketch, out, error);
-    status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+        status = rosette_petioles(xyz, row, count, sketch, out, error);
+    else
+        status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
+    /* Of voxel means it is ghosts that lie apart, and these are of no organ. */
     if (status != PLM_OK || sketch->habit != PLM_HABIT_ROSETTE || sketch->scale.pitch > 0) return status;
     return plm_rosette_pieces(xyz, row, count, out, error);
 }

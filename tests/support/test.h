@@ -34,12 +34,12 @@ const char *test_data_folder(void);
 double test_uniform(uint64_t *state);
 double test_normal(uint64_t *state);
 
-/** A case that grows, scans and measures whole plants, beside cmocka_unit_test; its file runs its cases by run_cases. */
+/** A case that takes a second and more, as it measures whole plants; else as cmocka_unit_test. Its file runs its cases by run_cases. */
 #define plant_case(function) cmocka_unit_test_setup(function, test_grows_plants)
 int test_grows_plants(void **unused);
 
 /** Runs the cases of a file and gives what main has to: all of them, but under sanitizers, with which they take three times as long,
- * every third of the plant cases, which lead through the same code; with PLANTIMETER_EVERY_CASE set, all there too. */
+ * every third of the plant cases, which lead through the same code; with PLANTIMETER_EVERY_CASE=1 all there too. */
 #define run_cases(cases) test_run((cases), COUNT(cases))
 int test_run(const struct CMUnitTest *cases, size_t count);
 

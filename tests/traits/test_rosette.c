@@ -331,7 +331,7 @@ int main(void)
         plant_case(petioles_tell_the_base_that_they_hide),
         plant_case(petioles_mend_what_is_guessed_of_the_base),
         plant_case(heights_of_splats_know_the_noise),
-        plant_case(points_that_coincide_have_a_height),
+        cmocka_unit_test(points_that_coincide_have_a_height),
         plant_case(soil_under_a_rosette_is_no_foot),
         plant_case(the_soil_about_a_rosette_tells_its_base),
         plant_case(petioles_that_are_hardly_seen_bear_leaves),

@@ -370,7 +370,7 @@ int main(void)
         cmocka_unit_test(errors_that_no_longer_fall_draw_less_time),
         plant_case(what_there_is_no_time_for_is_left_out_with_that_reason),
         cmocka_unit_test(a_deadline_that_has_passed_leaves_rows_without_values),
-        plant_case(the_points_of_the_record_give_the_same_digits),
+        cmocka_unit_test(the_points_of_the_record_give_the_same_digits),
         cmocka_unit_test(targets_are_read_in_the_traits_unit_or_in_percent),
         cmocka_unit_test(traits_of_organs_are_judged_by_the_median_organ),
         plant_case(a_target_ends_with_as_few_points_as_reach_it_or_with_all),
