@@ -150,16 +150,15 @@ static void few_points_and_none_do(void **unused)
     assert_all_of(6, 30, PLM_LABEL_LEAF, 1);
 }
 
-static double squared_to_a_blade(const plm_cloud *cloud, size_t i)
+static bool is_near_a_blade(const plm_cloud *cloud, size_t i, double reach)
 {
-    double least = INFINITY;
     for (size_t j = 0; j < cloud->count; j++) {
         if (cloud->label[j] != PLM_LABEL_LEAF) continue;
         double squared = 0;
         for (int a = 0; a < 3; a++) squared += pow((double)cloud->xyz[i][a] - cloud->xyz[j][a], 2);
-        least = fmin(least, squared);
+        if (squared < reach * reach) return true;
     }
-    return least;
+    return false;
 }
 
 /* Between 7 and 13 points of these were blade at the petioles' feet, and drew the leaves' planes to them by degrees. */
@@ -174,7 +173,7 @@ static void without_noise_no_petiole_bears_pieces_of_its_blade(void **unused)
         size_t apart = 0;
         for (size_t i = 0; i < cloud->count; i++)
             if (cloud->label[i] == PLM_LABEL_PETIOLE && made.found.label[i] == PLM_LABEL_LEAF)
-                apart += squared_to_a_blade(cloud, i) > 1e-3 * 1e-3;
+                apart += !is_near_a_blade(cloud, i, 1e-3);
         print_message("%zu points of petioles are blade\n", apart);
         assert_true(apart < 3);
         virtual_plant_free(&made);
