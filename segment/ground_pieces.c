@@ -13,6 +13,8 @@ static const float PLANT_SHARE = 0.5f; /* of the plant among the points of a col
 static const float CLEAR_SHARE = 0.8f; /* ... more is */
 /* Patches mostly of the plant's colour in and about a piece of the plant's, of all there, at least. */
 static const double FILLED = 0.25;
+/* In voxels, off the wall that was traced: a piece that nowhere leaves it by more is the wall's, whatever its colour. */
+static const double ON_WALL = 0.15;
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
@@ -22,6 +24,7 @@ typedef struct pieces {
     int32_t *piece;             /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
     bool *stays;   /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
+    bool *leaves;  /* of each piece: it leaves the wall, or stands over the soil */
     size_t *size;  /* of each piece, patches */
     double *green; /* of each piece: patches of the plant's colour */
     size_t *about, *green_about; /* of each piece: patches in and about its own, those mostly of the plant's colour */
@@ -58,6 +61,14 @@ static bool close_to_ground(const plm_marker *m, const double p[3])
     const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - s->pot.soil;
     if (out < 0 && over < fmax(1.5 * m->cell, 2 * m->soil_slack)) return true;
     return p[2] < m->rim_height + 1.5 * m->cell && out < fmax(reach, 0.15 * radius) && out > -0.15 * radius - reach;
+}
+
+/* Does a patch lie on the outer wall, below the soil? */
+static bool is_on_wall(const plm_marker *m, const double p[3])
+{
+    const plm_ground_scene *s = m->scene;
+    if (!s->has_pot || p[2] > s->pot.soil) return false;
+    return fabs(plm_pot_distance(&s->pot, p) - plm_wall_radius(m, p[2])) < ON_WALL * m->cell;
 }
 
 /* Does a patch hold but the tail of the ground's noise, or what has the plant's colour by chance? */
@@ -122,11 +133,14 @@ static void judge_pieces(const plm_marker *m, pieces *q)
         for (size_t j = 0; j < count; j++) q->green_about[n] += 2 * q->plantlike[about[j]] > s->points[about[j]];
         if (largest < 0 || q->size[n] > q->size[largest]) largest = n;
         const float *place = m->scene->stand.place[k];
-        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, (const double[3]){place[0], place[1], place[2]});
+        const double p[3] = {place[0], place[1], place[2]};
+        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, p);
+        if (!is_on_wall(m, p)) q->leaves[n] = true;
     }
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
-        if (n == largest || (is_green && (double)q->green_about[n] > FILLED * (double)q->about[n])) q->stays[n] = true;
+        if (n == largest || (is_green && q->leaves[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
+            q->stays[n] = true;
     }
 }
 
@@ -171,19 +185,21 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .piece = plm_alloc(count, sizeof *q.piece, error),
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
+                .leaves = plm_alloc_zero(count, sizeof *q.leaves, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
                 .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room =
-        q.ground && q.plantlike && q.piece && q.stack && q.stays && q.size && q.green && q.about && q.green_about;
+    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.leaves && q.size && q.green &&
+                      q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
     plm_free(q.piece);
     plm_free(q.stack);
     plm_free(q.stays);
+    plm_free(q.leaves);
     plm_free(q.size);
     plm_free(q.green);
     plm_free(q.about);
