@@ -26,8 +26,8 @@ static const double ELSEWHERE = 0.03; /* density beside the leaf, of the blade's
 static const double FAINTEST = 0.1;   /* density of the petiole, of the blade's, at least, before voxels fill it */
 /* Weight of the thickness: midribs are thick for a while, and neighbours' heights are not independent. */
 static const double THICKNESS = 0.3;
-static const double THICKNESS_TELLS =
-    5;                             /* logarithm of how much likelier a change is than none, where nothing else tells */
+/* Logarithm of how much likelier a change is than none, at least, where nothing else tells. */
+static const double THICKNESS_TELLS = 5;
 static const double SWOLLEN = 0.5; /* SDs of the noise by which an outline seems to lie outward */
 /* Outlines: half width of the blade over the way ahead; slope of a lobe's edge, and its curvature over R. */
 static const double WEDGE[] = {0.5, 0.8, 1.2, 1.8, 3, 6, INFINITY};
@@ -313,6 +313,17 @@ typedef struct evidence {
     double expected;
 } evidence;
 
+/* What thickness tells; there is none where there is no memory. */
+static evidence heights_of(const plm_base_view *view, double expected, plm_scratch *scratch)
+{
+    plm_base_height *list = plm_scratch_take(scratch, view->count + 1, sizeof *list);
+    double *rest = plm_scratch_take(scratch, view->count + 1, sizeof *rest);
+    double *cumulated = plm_scratch_take(scratch, view->count + 1, sizeof *cumulated);
+    evidence found = {.list = list, .cumulated = cumulated, .expected = expected};
+    if (!scratch->failed) found.heights = plm_base_heights(view, list, rest, cumulated);
+    return found;
+}
+
 /* Fills a row of the table: the outlines of either side, thickness, and what was expected. */
 static void judge(const outline *o, const evidence *e, int k, plm_base_table *table)
 {
@@ -354,9 +365,6 @@ plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_ta
     outline *o = plm_scratch_take(&scratch, 1, sizeof *o);
     pixel *pixels = plm_scratch_take(&scratch, (size_t)2 * ROWS * COLUMNS, sizeof *pixels);
     int(*count)[COLUMNS] = plm_scratch_take(&scratch, ROWS, sizeof *count);
-    plm_base_height *list = plm_scratch_take(&scratch, view->count + 1, sizeof *list);
-    double *rest = plm_scratch_take(&scratch, view->count + 1, sizeof *rest);
-    double *cumulated = plm_scratch_take(&scratch, view->count + 1, sizeof *cumulated);
     image *images = plm_scratch_take(&scratch, OUTLINES, sizeof *images);
     float(*sharp)[COLUMNS] = plm_scratch_take(&scratch, IMAGE_ROWS, sizeof *sharp);
     *told = false;
@@ -373,9 +381,9 @@ plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_ta
             count_pixels(o, count);
             fill_strip(o);
             for (size_t which = 0; which < OUTLINES; which++) draw(o, which, sharp);
-            const evidence found = {list, cumulated, plm_base_heights(view, list, rest, cumulated), expected};
-            search(o, &found, table);
-            *told = true;
+            const evidence found = heights_of(view, expected, &scratch);
+            if (!scratch.failed) search(o, &found, table);
+            *told = !scratch.failed;
         }
     }
     const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
@@ -386,17 +394,14 @@ plm_status plm_base_look(const plm_base_view *view, double expected, plm_base_ta
 plm_status plm_base_look_at_thickness(const plm_base_view *view, plm_base_table *table, bool *told, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
-    plm_base_height *list = plm_scratch_take(&scratch, view->count + 1, sizeof *list);
-    double *rest = plm_scratch_take(&scratch, view->count + 1, sizeof *rest);
-    double *cumulated = plm_scratch_take(&scratch, view->count + 1, sizeof *cumulated);
+    const evidence e = heights_of(view, 0, &scratch);
     *told = false;
-    const size_t heights = scratch.failed ? 0 : plm_base_heights(view, list, rest, cumulated);
-    if (heights) {
-        const double none = plm_base_thickness(view, list, cumulated, heights, INFINITY);
+    if (e.heights) {
+        const double none = plm_base_thickness(view, e.list, e.cumulated, e.heights, INFINITY);
         *table = (plm_base_table){.first = first_row(view), .step = STEP * view->scale};
         for (int k = 0; k < PLM_BASE_ROWS; k++) {
             const double at = table->first + k * table->step;
-            table->rest[k] = THICKNESS * (plm_base_thickness(view, list, cumulated, heights, at) - none);
+            table->rest[k] = THICKNESS * (plm_base_thickness(view, e.list, e.cumulated, e.heights, at) - none);
             if (table->rest[k] > THICKNESS_TELLS) *told = true;
         }
     }

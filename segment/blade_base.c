@@ -266,28 +266,6 @@ static plm_status ask_outline(const leaf_points *leaf, const plm_scale *scale, b
     return status;
 }
 
-/* Beyond the junction all is blade; before it, up to where the petiole ended (beside a small blade anywhere), what lies about its line is
- * petiole. */
-static void relabel(const leaf_points *leaf, const plm_scale *scale, const frame *f, double old_end, double junction,
-                    bool is_small, const uint32_t *row, plm_segmentation *out)
-{
-    const double R = scale->radius, strip = (is_small ? SMALL_STRIP : 1) * f->radius + 1.5 * scale->noise;
-    for (size_t i = 0; i < leaf->count; i++) {
-        double place[3];
-        flatten(f, leaf->xyz[leaf->point[i]], place);
-        if (fabs(place[1]) > SIDE * R || fabs(place[2]) > THICK * R || fabs(place[0]) > REACH * R) continue;
-        const uint32_t at = row[leaf->point[i]];
-        const uint8_t old = out->label[at];
-        if (place[0] >= junction)
-            out->label[at] = PLM_LABEL_LEAF;
-        else if ((is_small || place[0] > old_end - AHEAD * R) && fabs(place[1]) < strip &&
-                 fabs(place[2]) < strip + scale->noise)
-            out->label[at] = PLM_LABEL_PETIOLE;
-        if (out->leaflet && out->label[at] != old)
-            out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
-    }
-}
-
 /** A leaf whose base was looked at: its points, the frame that it was flattened in, and what the outlines say there. */
 typedef struct base {
     leaf_points leaf;
@@ -380,6 +358,30 @@ static plm_status look(const leaf_points *leaf, const plm_scale *scale, const sc
     return status == PLM_OK && !out->table && leaf->is_rosettes ? look_at_small(room, out, error) : status;
 }
 
+/* Beyond the junction all is blade; before it, up to where the petiole ended (beside a small blade anywhere), what lies about its line is
+ * petiole. */
+static void relabel(const base *b, double junction, const uint32_t *row, plm_segmentation *out)
+{
+    const leaf_points *leaf = &b->leaf;
+    const frame *f = &b->frame;
+    const double R = b->scale.radius, noise = b->scale.noise;
+    const double strip = (b->is_small ? SMALL_STRIP : 1) * f->radius + 1.5 * noise;
+    for (size_t i = 0; i < leaf->count; i++) {
+        double place[3];
+        flatten(f, leaf->xyz[leaf->point[i]], place);
+        if (fabs(place[1]) > SIDE * R || fabs(place[2]) > THICK * R || fabs(place[0]) > REACH * R) continue;
+        const uint32_t at = row[leaf->point[i]];
+        const uint8_t old = out->label[at];
+        if (place[0] >= junction)
+            out->label[at] = PLM_LABEL_LEAF;
+        else if ((b->is_small || place[0] > -b->moved - AHEAD * R) && fabs(place[1]) < strip &&
+                 fabs(place[2]) < strip + noise)
+            out->label[at] = PLM_LABEL_PETIOLE;
+        if (out->leaflet && out->label[at] != old)
+            out->leaflet[at] = out->label[at] == PLM_LABEL_LEAF ? 0 : -1; /* a simple leaf has one */
+    }
+}
+
 /* Moves the borders of all leaves to where the outlines of all put them; a rosette's leaves of different ages begin unlike. */
 static void set_borders(const base *list, size_t count, const plm_base_table *const *table, const uint32_t *row,
                         plm_segmentation *out)
@@ -392,7 +394,7 @@ static void set_borders(const base *list, size_t count, const plm_base_table *co
         /* What is thin is no petiole: outlines of few points may put the border beyond. */
         if (list[i].is_small) junction = fmin(junction, list[i].guess - moved);
         if (moved + junction > list[i].most) continue;
-        relabel(&list[i].leaf, &list[i].scale, &list[i].frame, -moved, junction, list[i].is_small, row, out);
+        relabel(&list[i], junction, row, out);
     }
 }
 

@@ -23,10 +23,10 @@ typedef struct pieces {
     double *ground, *plantlike; /* of each patch: how many of its points are ground, how many have the plant's colour */
     int32_t *piece;             /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
-    bool *stays;   /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
-    bool *leaves;  /* of each piece: it leaves the wall, or stands over the soil */
-    size_t *size;  /* of each piece, patches */
-    double *green; /* of each piece: patches of the plant's colour */
+    bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
+    bool *off_wall; /* of each piece: it leaves the wall, or stands over the soil */
+    size_t *size;   /* of each piece, patches */
+    double *green;  /* of each piece: patches of the plant's colour */
     size_t *about, *green_about; /* of each piece: patches in and about its own, those mostly of the plant's colour */
     int32_t count;
 } pieces;
@@ -135,11 +135,11 @@ static void judge_pieces(const plm_marker *m, pieces *q)
         const float *place = m->scene->stand.place[k];
         const double p[3] = {place[0], place[1], place[2]};
         if (!q->stays[n]) q->stays[n] = !close_to_ground(m, p);
-        if (!is_on_wall(m, p)) q->leaves[n] = true;
+        if (!is_on_wall(m, p)) q->off_wall[n] = true;
     }
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
-        if (n == largest || (is_green && q->leaves[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
+        if (n == largest || (is_green && q->off_wall[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
             q->stays[n] = true;
     }
 }
@@ -185,13 +185,13 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .piece = plm_alloc(count, sizeof *q.piece, error),
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
-                .leaves = plm_alloc_zero(count, sizeof *q.leaves, error),
+                .off_wall = plm_alloc_zero(count, sizeof *q.off_wall, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
                 .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.leaves && q.size && q.green &&
+    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.off_wall && q.size && q.green &&
                       q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
@@ -199,7 +199,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.piece);
     plm_free(q.stack);
     plm_free(q.stays);
-    plm_free(q.leaves);
+    plm_free(q.off_wall);
     plm_free(q.size);
     plm_free(q.green);
     plm_free(q.about);

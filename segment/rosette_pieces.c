@@ -1,6 +1,6 @@
 /* segment/rosette_pieces.c: a leaf's border with its petiole is told by the way from the core, and what is as far out counts as
- * its blade: so does a piece of another leaf that leans on the petiole, and without noise what looked flat at the petiole's own foot. But a blade is one
- * piece. */
+ * its blade: so does a piece of another leaf that leans on the petiole, and without noise what
+ * looked flat at the petiole's own foot. But a blade is one piece. */
 #include "segment/rosette_pieces.h"
 
 #include "cloud/neighbours.h"

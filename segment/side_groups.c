@@ -2,9 +2,8 @@
  * nearest along the graph. So two leaves that touch far from the stem are still two; their border is moved to the touch. */
 #include "segment/side_groups.h"
 
-#include "cloud/order.h"
-
 #include "cloud/linear.h"
+#include "cloud/order.h"
 #include "segment/blade_hills.h"
 #include "segment/core.h"
 #include "segment/forked_feet.h"
