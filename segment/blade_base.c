@@ -27,8 +27,8 @@ static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines be
 static const double CLEAR_NOISE = 0.5;
 /* In R: a rosette's blades have no lobes beside the petiole that put the first guess farther off. Farther moves go to the tip. */
 static const double MOST_MOVE = 1;
-/* Of a small blade's reach: what is farther is blade wherever it begins. */
-static const double FAR_PART = 0.5;
+/* Of a small blade's reach: what is farther gives its plane, and it begins at the latest. */
+static const double FAR_PART = 0.5, FARTHEST = 0.65;
 /* Before a small blade, which has no lobes beside it, all within so many of its radii is petiole. */
 static const double SMALL_STRIP = 3;
 /* Of a small blade: blur, in its petiole's radii, at least (a tube is densest at its sides, and its middle is known to less than that), and
@@ -174,24 +174,27 @@ static void find_middle(const leaf_points *leaf, const plm_scale *scale, float *
     if (count > FEWEST_PIECE) f->middle = plm_quantile(value, count, 0.5);
 }
 
-/* The line of what lies about the old one up to the junction; its origin goes to the junction. false: none. */
-static bool next_line(const leaf_points *leaf, const plm_scale *scale, double junction, uint32_t *chosen, frame *f)
+/* The line of what lies about the old one up to the junction; its origin goes to the junction. is_bent: the junction is far ahead, on
+ * the way to the far blade, from which the petiole may bow off the blade's plane, not aside. false: none. */
+static bool next_line(const leaf_points *leaf, const plm_scale *scale, double junction, bool is_bent, uint32_t *chosen,
+                      frame *f)
 {
+    const double *way = is_bent ? f->ahead : f->along;
     const double R = scale->radius, reach = f->radius + 2 * scale->noise + 0.065 * R;
     double mean[3], vector[3][3], d[3];
     size_t count = 0;
     for (size_t i = 0; i < leaf->count; i++) {
         offset_from(leaf->xyz[leaf->point[i]], f->origin, d);
-        const double forward = plm_dot(d, f->along);
-        if (forward < junction - AHEAD * R && forward > junction - PLANE * R &&
-            plm_dot(d, d) - forward * forward < reach * reach)
+        const double forward = plm_dot(d, way), side = is_bent ? plm_dot(d, f->ahead_across) - f->middle : 0;
+        const double aside = is_bent ? side * side : plm_dot(d, d) - forward * forward;
+        if (forward < junction - AHEAD * R && forward > junction - PLANE * R && aside < reach * reach)
             chosen[count++] = leaf->point[i];
     }
     if (count < FEWEST_PIECE) return false;
     principal(leaf, chosen, count, mean, vector);
     turn_towards(vector[0], f->along);
     if (plm_dot(vector[0], f->along) < LEAST_TURN) return false;
-    for (int a = 0; a < 3; a++) d[a] = f->origin[a] + junction * f->along[a] - mean[a];
+    for (int a = 0; a < 3; a++) d[a] = f->origin[a] + junction * way[a] - mean[a];
     const double forward = plm_dot(d, vector[0]);
     for (int a = 0; a < 3; a++) f->origin[a] = mean[a] + forward * vector[0][a];
     memcpy(f->along, vector[0], sizeof f->along);
@@ -295,7 +298,7 @@ static plm_status ask_in_rounds(const scratch_room *room, base *b, plm_error *er
     for (int round = 0; round < ROUNDS; round++) {
         frame next = b->frame;
         const double junction = b->table ? plm_base_mean(b->table, any) : 0, moved = b->moved + junction;
-        if (b->table && !next_line(leaf, &b->scale, junction, room->chosen, &next)) break;
+        if (b->table && !next_line(leaf, &b->scale, junction, b->is_guess, room->chosen, &next)) break;
         if (!find_plane(leaf, AHEAD * R, PLANE * R, room->chosen, &next)) break;
         find_middle(leaf, &b->scale, room->value, &next);
         plm_base_table *table = plm_alloc(1, sizeof *table, error);
@@ -336,7 +339,7 @@ static plm_status look_at_small(const scratch_room *room, base *b, plm_error *er
         double any[PLM_BASE_OUTLINES];
         plm_base_any(any);
         b->guess = plm_base_mean(guess, any);
-        b->most = FAR_PART * end;
+        b->most = FARTHEST * end;
         status = ask_in_rounds(room, b, error);
         if (b->is_guess) {
             plm_free(b->table);

@@ -6,10 +6,16 @@
 #include <math.h>
 #include <string.h>
 
+/* Of the plant among the points of a colour, from which on a point at a surface is the plant's: all around a point that lies below the
+ * soil's relief is soil, so that a colour has to say more there. */
+static const float RETURNED = 0.95f, RETURNED_BELOW = 0.98f;
+
 static void return_by_colour(plm_marker *m, const float plant_share[PLM_COLOURS])
 {
     for (size_t i = 0; i < m->cloud->count; i++)
-        if (m->zone[i] == PLM_ZONE_NEAR && plant_share[plm_shade(m->cloud->rgb[i])] > 0.95f) m->zone[i] = PLM_ZONE_FREE;
+        if (m->zone[i] == PLM_ZONE_NEAR &&
+            plant_share[plm_shade(m->cloud->rgb[i])] > (m->over[i] > 0 ? RETURNED : RETURNED_BELOW))
+            m->zone[i] = PLM_ZONE_FREE;
 }
 
 /* First places; the foot moves to the stem if one is found. */

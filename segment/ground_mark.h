@@ -63,7 +63,7 @@ static inline double plm_wall_radius(const plm_marker *m, double w)
 /** Fits soil, table and rim, and fills over and zone. */
 plm_status plm_ground_zones(plm_marker *marker, plm_error *error);
 
-enum { PLM_SHADES = 8, PLM_COLOURS = PLM_SHADES * PLM_SHADES * PLM_SHADES };
+enum { PLM_SHADES = 16, PLM_COLOURS = PLM_SHADES * PLM_SHADES * PLM_SHADES };
 
 /** Share of each colour that is plant, were there as much plant as ground. False where colour does not tell them apart. */
 bool plm_ground_colours(const plm_marker *marker, float plant_share[PLM_COLOURS]);
