@@ -27,7 +27,7 @@ static const double LEAST_TURN = 0.8, LEAST_LEVEL = 0.3; /* cosines: of lines be
 static const double CLEAR_NOISE = 0.5;
 /* In R: a rosette's blades have no lobes beside the petiole that put the first guess farther off. Farther moves go to the tip. */
 static const double MOST_MOVE = 1;
-/* Of a small blade's reach: what is farther gives its plane, and it begins at the latest. */
+/* Of a small blade's reach: what is farther gives its plane. And where it begins at the latest. */
 static const double FAR_PART = 0.5, FARTHEST = 0.65;
 /* Before a small blade, which has no lobes beside it, all within so many of its radii is petiole. */
 static const double SMALL_STRIP = 3;

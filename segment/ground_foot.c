@@ -1,5 +1,5 @@
 /* segment/ground_foot.c: where a plant meets the soil. Soil points at the foot of something that stands are its foot, if
- * colours do not say otherwise; what is left of bumps where nothing stands is soil. */
+ * colours do not say otherwise; what is left of bumps where nothing stands is soil, and at a foot what has surely its colour. */
 #include <math.h>
 
 #include "segment/ground_mark.h"
@@ -7,10 +7,11 @@
 enum { FOOT_LAYERS = 4, FILLED = (1 << FOOT_LAYERS) - 1 };
 
 static const float SOIL_SHARE = 0.2f;   /* of the plant among the points of a colour: less is the soil's */
+static const float SURE_SHARE = 0.05f;  /* less: surely the soil's */
 static const float PLANT_SHARE = 0.5f;  /* more: no bump of the soil */
 static const double FOOT_LAYER = 0.75;  /* voxels */
-static const float SURE_SHARE = 0.05f;  /* less: surely the soil's */
 static const double BUMP = 0.25;        /* voxels beyond the slack that bumps and the tail of the noise reach */
+static const double BROWN = 2;          /* voxels above the highest bumps in which the soil's colour is a stem's */
 static const double HIGHEST_BUMP = 1.3; /* voxels over the relief that single bumps reach where there is little noise */
 /* Points of other colours per point of the soil's about a foot: 0.2 and more under stems, 0.03 and less under rosettes. */
 static const double ROOTED = 0.1;
@@ -96,10 +97,56 @@ typedef struct patch_points {
     size_t ground, other;
 } patch_points;
 
+static bool has_surely_soils_colour(const plm_marker *m, size_t i, const float *plant_share)
+{
+    return plant_share && plant_share[plm_shade(m->cloud->rgb[i])] < SURE_SHARE;
+}
+
+/* How high over the relief bumps reach. */
+static double highest_bump(const plm_marker *m)
+{
+    return fmax(m->soil_slack + BUMP * m->cell, HIGHEST_BUMP * m->cell);
+}
+
 static bool is_soils_by_colour(const plm_marker *m, size_t i, const float *plant_share)
 {
-    return plant_share && plant_share[plm_shade(m->cloud->rgb[i])] < SURE_SHARE &&
-           (double)m->over[i] <= fmax(m->soil_slack + BUMP * m->cell, HIGHEST_BUMP * m->cell);
+    return (double)m->over[i] <= highest_bump(m) && has_surely_soils_colour(m, i, plant_share);
+}
+
+/* Free points over a cell of the floor: bumps, and higher ones with surely the soil's colour, and with others. */
+typedef struct column {
+    uint32_t bumps, brown, other;
+} column;
+
+/* The columns of all cells; NULL: no room. The caller's. */
+static column *find_columns(const plm_marker *m, const float *plant_share, plm_error *error)
+{
+    const plm_stand *t = &m->scene->stand;
+    const double low = highest_bump(m), high = low + BROWN * m->cell;
+    column *columns = plm_alloc_zero((size_t)(2 * t->size[0]) * (size_t)(2 * t->size[1]), sizeof *columns, error);
+    for (size_t i = 0; columns && i < m->cloud->count; i++) {
+        if (m->zone[i] != PLM_ZONE_FREE || !((double)m->over[i] < high)) continue;
+        const int64_t c = foot_cell(t, m->place[i]);
+        if (c < 0) continue;
+        if (!has_surely_soils_colour(m, i, plant_share))
+            columns[c].other += (double)m->over[i] > low;
+        else
+            (double)m->over[i] > low ? columns[c].brown++ : columns[c].bumps++;
+    }
+    return columns;
+}
+
+/* Do the bumps on the cell and beside it go on upwards, as the foot of a brown stem does? */
+static bool is_by_brown(const plm_stand *t, const column *columns, int64_t cell)
+{
+    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
+    size_t bumps = 0, brown = 0, other = 0;
+    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
+        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++) {
+            const column *it = &columns[a * high + b];
+            bumps += it->bumps, brown += it->brown, other += it->other;
+        }
+    return brown > other && brown > bumps;
 }
 
 static void count_ground(const plm_marker *m, const float *plant_share, patch_points *held)
@@ -121,24 +168,28 @@ static bool is_like_soil(const plm_marker *m, size_t i, const float *plant_share
 
 /* Where there is little noise, bumps of the soil that are smaller than the relief's cells stick out of it, and where there is
  * much, its tail does. Where nothing stands, such points are soil if they have its colour or most of their patch is ground; at a
- * foot, if their colour is surely the soil's and the patch is not the plant's: one of them 2 mm beside a stem widens the hull by
- * 0.4 %, and those below a rosette are lower than all of it. */
+ * foot, if their colour is surely the soil's, the patch is not the plant's, and it does not go on upwards: one of them 2 mm
+ * beside a stem widens the hull by 0.4 %, and those below a rosette are lower than all of it. */
 plm_status plm_ground_bumps(plm_marker *m, const float *plant_share, plm_error *error)
 {
     const plm_stand *t = &m->scene->stand;
     uint8_t *layers = find_layers(m, error);
+    column *columns = find_columns(m, plant_share, error);
     patch_points *held = plm_alloc_zero(t->surfels->count + 1, sizeof *held, error);
-    const bool room = layers && held;
+    const bool room = layers && columns && held;
     if (room) count_ground(m, plant_share, held);
     for (size_t i = 0; room && i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const patch_points in_patch = held[m->patch[i]];
         const int64_t c = foot_cell(t, m->place[i]);
-        if ((is_soils_by_colour(m, i, plant_share) && in_patch.ground >= in_patch.other) ||
-            (c >= 0 && !is_by_foot(t, layers, c) && is_like_soil(m, i, plant_share, in_patch)))
+        if (c < 0) continue;
+        const bool surely = is_soils_by_colour(m, i, plant_share) && in_patch.ground >= in_patch.other;
+        if ((surely && !is_by_brown(t, columns, c)) ||
+            (!is_by_foot(t, layers, c) && is_like_soil(m, i, plant_share, in_patch)))
             m->zone[i] = PLM_ZONE_NEAR;
     }
     plm_free(held);
+    plm_free(columns);
     plm_free(layers);
     return room ? PLM_OK : PLM_E_MEMORY;
 }

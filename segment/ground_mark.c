@@ -10,11 +10,20 @@
  * soil's relief is soil, so that a colour has to say more there. */
 static const float RETURNED = 0.95f, RETURNED_BELOW = 0.98f;
 
+/* Below the soil, not beside the pot? */
+static bool is_in_soil(const plm_marker *m, size_t i)
+{
+    if (!(m->over[i] <= 0)) return false;
+    const double p[3] = {m->place[i][0], m->place[i][1], m->place[i][2]};
+    const plm_pot *pot = &m->scene->pot;
+    return !m->scene->has_pot || plm_pot_distance(pot, p) < plm_wall_radius(m, p[2]) - m->wall_slack;
+}
+
 static void return_by_colour(plm_marker *m, const float plant_share[PLM_COLOURS])
 {
     for (size_t i = 0; i < m->cloud->count; i++)
         if (m->zone[i] == PLM_ZONE_NEAR &&
-            plant_share[plm_shade(m->cloud->rgb[i])] > (m->over[i] > 0 ? RETURNED : RETURNED_BELOW))
+            plant_share[plm_shade(m->cloud->rgb[i])] > (is_in_soil(m, i) ? RETURNED_BELOW : RETURNED))
             m->zone[i] = PLM_ZONE_FREE;
 }
 

@@ -82,7 +82,8 @@ plm_status plm_ground_leftovers(plm_marker *marker, const float *plant_share, pl
  * may be NULL. */
 plm_status plm_ground_foot(plm_marker *marker, const float *plant_share, double foot[2], plm_error *error);
 
-/** Makes ground of free points a little over the soil where nothing stands. plant_share may be NULL. */
+/** Makes ground of free points a little over the soil where nothing stands, or that have surely the soil's colour. plant_share may be
+ * NULL. */
 plm_status plm_ground_bumps(plm_marker *marker, const float *plant_share, plm_error *error);
 
 /** Is the place within a level's outline, widened by margin? */

@@ -8,6 +8,7 @@
 #include "segment/head.h"
 #include "segment/petiole_foot.h"
 #include "segment/rosette_borders.h"
+#include "segment/rosette_links.h"
 #include "segment/rosette_petioles.h"
 #include "segment/rosette_pieces.h"
 #include "segment/scratch.h"
@@ -136,7 +137,7 @@ static bool may_be_head(plm_habit habit, const plm_sketch *sketch)
 
 /* Whether doubtful tubes were petioles: they then part the blades into leaves of which none is half of the plant. On virtual
  * rosettes the largest has 0.3 at most, while of single leaves the noise parts a rim or a fold and leaves 0.57 or more. */
-static plm_status is_rosette(const plm_sketch *sketch, bool *answer, plm_error *error)
+static plm_status has_rosettes_leaves(const plm_sketch *sketch, bool *answer, plm_error *error)
 {
     size_t *size = plm_alloc_zero(sketch->leaf_count + 1, sizeof *size, error), all = 0, largest = 0;
     if (!size) return PLM_E_MEMORY;
@@ -165,35 +166,46 @@ static plm_status find_voxels(const float (*xyz)[3], size_t count, plm_scale *sc
 }
 
 /* Of a blurred rosette the leaves tell of each other whose the petioles are, and where the blades begin. */
-static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, const plm_sketch *sketch,
-                                   plm_segmentation *out, plm_error *error)
+static plm_status rosette_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, const double middle[3],
+                                   const plm_sketch *sketch, plm_segmentation *out, plm_error *error)
 {
-    uint32_t core;
-    plm_status status = plm_sketch_core(sketch, &core, error);
-    if (status != PLM_OK) return status;
-    if (core == UINT32_MAX) return plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
-    const float *at = sketch->working.xyz[core];
-    const double middle[3] = {at[0], at[1], at[2]};
-    status = plm_rosette_petioles(xyz, row, count, middle, out, error);
+    plm_status status = plm_rosette_petioles(xyz, row, count, middle, out, error);
     if (status == PLM_OK) status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
     return status == PLM_OK ? plm_rosette_borders(xyz, row, count, &sketch->scale, middle, out, error) : status;
+}
+
+/* Where all petioles of a rosette meet; false in has where none do, and of other plants. */
+static plm_status find_middle(const plm_sketch *sketch, double middle[3], bool *has, plm_error *error)
+{
+    *has = false;
+    if (sketch->habit != PLM_HABIT_ROSETTE) return PLM_OK;
+    uint32_t core;
+    const plm_status status = plm_sketch_core(sketch, &core, error);
+    if (status != PLM_OK || core == UINT32_MAX) return status;
+    for (int a = 0; a < 3; a++) middle[a] = sketch->working.xyz[core][a];
+    *has = true;
+    return PLM_OK;
 }
 
 /* Petioles, told at all points. Those of a rosette have no stem that hides their feet. */
 static plm_status refine_petioles(const float (*xyz)[3], const uint32_t *row, size_t count, plm_sketch *sketch,
                                   plm_segmentation *out, plm_error *error)
 {
-    plm_status status = PLM_OK;
-    if (sketch->habit != PLM_HABIT_ROSETTE) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
+    const bool is_rosette = sketch->habit == PLM_HABIT_ROSETTE;
+    double middle[3];
+    bool has_middle;
+    plm_status status = find_middle(sketch, middle, &has_middle, error);
+    if (status == PLM_OK && !is_rosette) status = plm_petiole_feet(xyz, row, count, sketch, out, error);
+    if (status == PLM_OK && has_middle) status = plm_rosette_links(xyz, row, count, middle, out, error);
     if (status != PLM_OK || !plm_simple_leaves(row, count, out)) return status;
     status = find_voxels(xyz, count, &sketch->scale, error);
     if (status != PLM_OK) return status;
-    if (sketch->habit == PLM_HABIT_ROSETTE && plm_rosette_is_noisy(&sketch->scale))
-        status = rosette_petioles(xyz, row, count, sketch, out, error);
+    if (has_middle && plm_rosette_is_noisy(&sketch->scale))
+        status = rosette_petioles(xyz, row, count, middle, sketch, out, error);
     else
         status = plm_blade_bases(xyz, row, count, &sketch->scale, out, error);
     /* Of voxel means it is ghosts that lie apart, and these are of no organ. */
-    if (status != PLM_OK || sketch->habit != PLM_HABIT_ROSETTE || sketch->scale.pitch > 0) return status;
+    if (status != PLM_OK || !is_rosette || sketch->scale.pitch > 0) return status;
     return plm_rosette_pieces(xyz, row, count, out, error);
 }
 
@@ -221,7 +233,7 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     status = find_organs((const float(*)[3])xyz, count, options, tubes, &sketch, error);
     if (status == PLM_OK && tubes != PLM_TUBES_SURE && sketch.scale.is_doubtful) {
         bool rosette;
-        status = is_rosette(&sketch, &rosette, error);
+        status = has_rosettes_leaves(&sketch, &rosette, error);
         if (status == PLM_OK && !rosette)
             status = find_organs((const float(*)[3])xyz, count, options, PLM_TUBES_SURE, &sketch, error);
     }

@@ -335,7 +335,7 @@ static void clouds_without_shape_do_no_harm(void **unused)
                 const double side = floor(3 * u),
                              p[6][3] = {
                                  {1, 2, 3},
-                                 {u, 0},
+                                 {u, 0, 0},
                                  {0, 0, u},
                                  {u, v, 0},
                                  {0, u, v},
