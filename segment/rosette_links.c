@@ -1,6 +1,6 @@
 /* segment/rosette_links.c: where a petiole is seen sparsely, or leans on another, balls on it look flat, and a piece of it becomes a
- * leaf of its own, with another leaf's blade beyond. But a blade is flat, and where it ends nothing goes on: a blade that is as
- * thick as it is wide, at whose tip another leaf goes on by more than its length, is a link of that leaf's petiole. */
+ * leaf of its own, with another leaf's blade beyond. But a blade is flat, and where it ends nothing goes on: a long blade
+ * nearly half as thick as wide, at whose tip another leaf goes on by more than its length, is a link of that leaf's petiole. */
 #include "segment/rosette_links.h"
 
 #include "cloud/linear.h"
@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* SDs of a link: the least over the middle one, the greatest over the middle one, at least. False blades that were looked at have 0.45 and
- * 2.4 and more. True ones have so much at times, but of those of 160 virtual rosettes none has what goes on beyond it. */
+ * 2.4 and more. True ones have so much at times, but of those of some 140 virtual rosettes none has what goes on beyond it. */
 static const double THICK = 0.4, LONG = 2.2;
 static const double TIP = 0.9;     /* quantile of the way from the core: farther out is the tip */
 static const double BESIDE = 3;    /* SDs across, beyond the tip: what goes on is there, ... */
