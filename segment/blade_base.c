@@ -5,6 +5,7 @@
 #include "segment/blade_base.h"
 
 #include "cloud/linear.h"
+#include "segment/leaf_of.h"
 #include "segment/scratch.h"
 #include "segment/subset.h"
 
@@ -407,10 +408,9 @@ static void gather(const uint32_t *row, size_t count, const plm_segmentation *ou
     const size_t leaves = out->leaf_count;
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < count; i++) {
-            const uint8_t label = out->label[row[i]];
-            const int32_t leaf = out->organ[row[i]];
-            if ((label != PLM_LABEL_PETIOLE && label != PLM_LABEL_LEAF) || leaf < 0 || (size_t)leaf >= leaves) continue;
-            const size_t slot = 2 * (size_t)leaf + (label == PLM_LABEL_LEAF);
+            const int32_t leaf = plm_leaf_of(out, row[i]);
+            if (leaf < 0) continue;
+            const size_t slot = 2 * (size_t)leaf + (out->label[row[i]] == PLM_LABEL_LEAF);
             if (pass)
                 point[first[slot]++] = (uint32_t)i;
             else

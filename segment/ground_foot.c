@@ -82,13 +82,25 @@ plm_status plm_ground_foot(plm_marker *m, const float *plant_share, double foot[
 
 /* ---- Bumps ---------------------------------------------------------------------------------------------------- */
 
+enum { ABOUT = 9 };
+
+/* A cell of the floor and those beside it. Gives their number. */
+static size_t cells_about(const plm_stand *t, int64_t cell, int64_t about[ABOUT])
+{
+    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
+    size_t count = 0;
+    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
+        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++) about[count++] = a * high + b;
+    return count;
+}
+
 /* Does anything stand on the cell of the floor or beside it? */
 static bool is_by_foot(const plm_stand *t, const uint8_t *layers, int64_t cell)
 {
-    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
-    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
-        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++)
-            if (layers[a * high + b] == FILLED) return true;
+    int64_t about[ABOUT];
+    const size_t count = cells_about(t, cell, about);
+    for (size_t k = 0; k < count; k++)
+        if (layers[about[k]] == FILLED) return true;
     return false;
 }
 
@@ -139,13 +151,13 @@ static column *find_columns(const plm_marker *m, const float *plant_share, plm_e
 /* Do the bumps on the cell and beside it go on upwards, as the foot of a brown stem does? */
 static bool is_by_brown(const plm_stand *t, const column *columns, int64_t cell)
 {
-    const int64_t high = 2 * t->size[1], x = cell / high, y = cell % high;
     size_t bumps = 0, brown = 0, other = 0;
-    for (int64_t a = x > 0 ? x - 1 : 0; a <= x + 1 && a < 2 * t->size[0]; a++)
-        for (int64_t b = y > 0 ? y - 1 : 0; b <= y + 1 && b < high; b++) {
-            const column *it = &columns[a * high + b];
-            bumps += it->bumps, brown += it->brown, other += it->other;
-        }
+    int64_t about[ABOUT];
+    const size_t count = cells_about(t, cell, about);
+    for (size_t k = 0; k < count; k++) {
+        const column *it = &columns[about[k]];
+        bumps += it->bumps, brown += it->brown, other += it->other;
+    }
     return brown > other && brown > bumps;
 }
 
@@ -174,9 +186,9 @@ plm_status plm_ground_bumps(plm_marker *m, const float *plant_share, plm_error *
 {
     const plm_stand *t = &m->scene->stand;
     uint8_t *layers = find_layers(m, error);
-    column *columns = find_columns(m, plant_share, error);
+    column *columns = plant_share ? find_columns(m, plant_share, error) : NULL; /* for what colours tell */
     patch_points *held = plm_alloc_zero(t->surfels->count + 1, sizeof *held, error);
-    const bool room = layers && columns && held;
+    const bool room = layers && held && (columns || !plant_share);
     if (room) count_ground(m, plant_share, held);
     for (size_t i = 0; room && i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;

@@ -5,6 +5,7 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
+#include "segment/leaf_of.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -37,13 +38,9 @@ typedef struct spread {
     double count, sum[3], product[6];
 } spread;
 
-/* The leaf that a point is of, by its blade or its petiole; -1: none. */
 static int32_t leaf_of(const work *w, size_t i)
 {
-    const uint8_t label = w->out->label[w->row[i]];
-    const int32_t organ = w->out->organ[w->row[i]];
-    const bool has = label == PLM_LABEL_LEAF || label == PLM_LABEL_PETIOLE;
-    return has && organ >= 0 && (size_t)organ < w->out->leaf_count ? organ : -1;
+    return plm_leaf_of(w->out, w->row[i]);
 }
 
 static bool is_blade_of(const work *w, size_t i, size_t leaf)

@@ -5,6 +5,7 @@
 #include "segment/rosette_petioles.h"
 
 #include "cloud/linear.h"
+#include "segment/leaf_of.h"
 #include "segment/scratch.h"
 
 #include <math.h>
@@ -49,12 +50,9 @@ typedef struct work {
     float *nearest;  /* of a point: distance from the nearest way of a young leaf */
 } work;
 
-/* The leaf that a point is of, -1 none. */
 static int32_t leaf_of(const work *w, size_t i)
 {
-    const uint8_t label = w->out->label[w->row[i]];
-    const int32_t k = w->out->organ[w->row[i]];
-    return (label == PLM_LABEL_PETIOLE || label == PLM_LABEL_LEAF) && k >= 0 && (size_t)k < w->out->leaf_count ? k : -1;
+    return plm_leaf_of(w->out, w->row[i]);
 }
 
 static bool is_petiole(const work *w, size_t i)

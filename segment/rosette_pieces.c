@@ -6,6 +6,7 @@
 #include "cloud/neighbours.h"
 #include "cloud/order.h"
 #include "segment/graph.h"
+#include "segment/leaf_of.h"
 #include "segment/scratch.h"
 #include "segment/votes.h"
 
@@ -98,12 +99,6 @@ static int32_t colour_of(const work *w, size_t i)
     return 2 * w->out->organ[w->row[i]] + (w->out->label[w->row[i]] == PLM_LABEL_LEAF);
 }
 
-static bool has_leaf(const work *w, size_t i)
-{
-    const uint8_t label = w->out->label[w->row[i]];
-    return (label == PLM_LABEL_PETIOLE || label == PLM_LABEL_LEAF) && w->out->organ[w->row[i]] >= 0;
-}
-
 /* Each point of a piece votes for the organs of those beside it that are in none. point: of each of these. */
 static size_t gather_votes(const work *w, const plm_index *index, const uint32_t *point, plm_vote *votes)
 {
@@ -130,7 +125,7 @@ static plm_status give_pieces(work *w, plm_scratch *scratch, plm_error *error)
     int32_t *winner = plm_scratch_take(scratch, w->pieces + 1, sizeof *winner);
     if (scratch->failed) return PLM_E_MEMORY;
     for (uint32_t i = 0; i < w->count; i++) {
-        if (w->piece[i] >= 0 || !has_leaf(w, i)) continue;
+        if (w->piece[i] >= 0 || plm_leaf_of(w->out, w->row[i]) < 0) continue;
         for (int a = 0; a < 3; a++) w->place[others][a] = w->xyz[i][a];
         w->point[others++] = i;
     }
