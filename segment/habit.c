@@ -16,15 +16,15 @@ static const double NEAR = 0.3, PETIOLES = 0.15, STRAPS = 0.21;
 static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
 static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
 static const double STRAP_EVIDENCE = 0.5;
-/* In less noise than this (in radii of the stem) tubes are no blades that it makes round: their share off the stem says folds, together
- * with feet (0.75 of a real tomato of long cotyledons; 0.62 at most of others, 0.25 of virtual plants with petioles). */
+/* In less noise than this (in radii of the stem) what looks like tubes are no blades that it makes round. Their share off the stem then
+ * says folds, together with feet (0.75 of a real tomato of long cotyledons; 0.62 at most of others, 0.25 of virtual plants with petioles). */
 static const double CLEAR_NOISE = 0.2, STRAP_WITH_TUBES = 0.7;
-/* In more than this it hides feet, and parts what hangs far out from straps that touch at theirs, so that less of them seems near; their
+/* More than this by themselves, where no blade has a foot, or that noise does not make: straps, or so few points that nothing tells
+ * petioles (large tomatoes of 1 600 and 5 600 points: F1 0.9 and 0.7 as straps, 0.6 and 0.3 with petioles). */
+static const double TUBE_LEAVES = 0.5;
+/* In more noise than this it hides feet, and parts what hangs far out from straps that touch at theirs, so that less of them seems near; their
  * blades are long (squared length over area, both summed: 2.1 to 2.5 of six maize, 0.95 at most of plants with petioles). */
 static const double STRAP_NOISE = 0.3, STRAP_LONG = 1.5;
-/* More of what is off the stem is tube: where no blade has a foot these are straps that look like it; and where larger balls find yet
- * more tubes, nothing tells petioles (a large tomato of 1 600 points: F1 0.9 as straps, 0.6 with petioles). */
-static const double TUBE_LEAVES = 0.5;
 /* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
  * but not both: those with 0.35 on it have 0.66 tube at most. */
 static const double BARE_TUBES = 0.76, BARE_STEM = 0.35;
@@ -209,13 +209,13 @@ static bool are_straps(const plm_sketch *sketch, const leaf_tally *tally, const 
 {
     const plm_scale *scale = &sketch->scale;
     const double tubes = tube_leaves(sketch);
-    if (!(tally->area > 0) || (scale->rises && tubes > TUBE_LEAVES)) return tubes > TUBE_LEAVES;
+    const bool is_clear = scale->noise < CLEAR_NOISE * scale->stem_radius;
+    if (!(tally->area > 0) || (is_clear && tubes > TUBE_LEAVES)) return tubes > TUBE_LEAVES;
     if (shape->near < PETIOLES || shape->near > STRAPS) return shape->near > STRAPS;
     if (scale->noise > STRAP_NOISE * scale->stem_radius && shape->elongation > STRAP_LONG) return true;
     if (are_compound(tally)) return false;
     const double feet = tally->strap / tally->area;
-    return feet > STRAP_EVIDENCE ||
-           (scale->noise < CLEAR_NOISE * scale->stem_radius && feet + tubes > STRAP_WITH_TUBES);
+    return feet > STRAP_EVIDENCE || (is_clear && feet + tubes > STRAP_WITH_TUBES);
 }
 
 plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *groups, plm_habit *habit, plm_error *error)

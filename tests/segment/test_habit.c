@@ -216,7 +216,6 @@ typedef struct made_plant {
     double noise;  /* in radii of the stem */
     double width;  /* of a blade, in R */
     size_t blades; /* a leaf */
-    bool rises;
 } made_plant;
 
 static plm_habit habit_of(const made_plant *made)
@@ -230,16 +229,12 @@ static plm_habit habit_of(const made_plant *made)
     static int32_t blade[ROWS], leaf[ROWS];
     plm_side_group group[GROUPS] = {0};
     double blade_area[BLADES];
-    plm_sketch sketch = {.scale = {.radius = R,
-                                   .stem_radius = R / 3,
-                                   .noise = made->noise * R / 3,
-                                   .size = 76 * R,
-                                   .has_tubes = true,
-                                   .rises = made->rises},
-                         .is_tube = is_tube,
-                         .is_stem = is_stem,
-                         .point = point,
-                         .group = leaf};
+    plm_sketch sketch = {
+        .scale = {.radius = R, .stem_radius = R / 3, .noise = made->noise * R / 3, .size = 76 * R, .has_tubes = true},
+        .is_tube = is_tube,
+        .is_stem = is_stem,
+        .point = point,
+        .group = leaf};
     plm_side_groups groups = {.count = GROUPS,
                               .group = group,
                               .distance = distance,
@@ -291,8 +286,8 @@ static void straps_are_wide_near_to_the_stem(void **unused)
         {{.near = 0.18, .feet = 1, .tubes = 0.4, .noise = 0.25, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 3, .blades = 2}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 24, .blades = 2}, PLM_HABIT_COMPOUND},
-        {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1, .rises = true}, PLM_HABIT_STRAP},
-        {{.near = 0.1, .feet = 1, .tubes = 0.4, .width = 8, .blades = 1, .rises = true}, PLM_HABIT_SIMPLE},
+        {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1}, PLM_HABIT_STRAP},
+        {{.near = 0.1, .feet = 1, .tubes = 0.4, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
     };
     for (size_t k = 0; k < sizeof plant / sizeof *plant; k++)
         assert_int_equal(habit_of(&plant[k].made), plant[k].habit);
