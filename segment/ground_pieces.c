@@ -15,6 +15,9 @@ static const float CLEAR_SHARE = 0.8f; /* ... more is */
 static const double FILLED = 0.25;
 /* In voxels, off the wall that was traced: a piece that nowhere leaves it by more is the wall's, whatever its colour. */
 static const double ON_WALL = 0.15;
+/* Patches close to the ground in a piece that is not of the plant's colour, of its own, at least: it is the ground's though the rest
+ * reaches away (the tail of 5.6 mm of noise about a rim: 0.9 and more). */
+static const double MOSTLY_CLOSE = 0.25;
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
@@ -24,6 +27,7 @@ typedef struct pieces {
     int32_t *piece;             /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
     bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
+    size_t *close;  /* of each piece: patches close to the ground */
     bool *off_wall; /* of each piece: it leaves the wall, or stands over the soil */
     size_t *size;   /* of each piece, patches */
     double *green;  /* of each piece: patches of the plant's colour */
@@ -60,7 +64,8 @@ static bool close_to_ground(const plm_marker *m, const double p[3])
     const double radius = plm_wall_radius(m, p[2]), out = plm_pot_distance(&s->pot, p) - radius;
     const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - s->pot.soil;
     if (out < 0 && over < fmax(1.5 * m->cell, 2 * m->soil_slack)) return true;
-    return p[2] < m->rim_height + 1.5 * m->cell && out < fmax(reach, 0.15 * radius) && out > -0.15 * radius - reach;
+    return p[2] < m->rim_height + fmax(1.5 * m->cell, m->soil_slack) && out < fmax(reach, 0.15 * radius) &&
+           out > -0.15 * radius - reach;
 }
 
 /* Does a patch lie on the outer wall, below the soil? */
@@ -118,7 +123,7 @@ static void join_patches(pieces *q)
     }
 }
 
-static void judge_pieces(const plm_marker *m, pieces *q)
+static void judge_pieces(const plm_marker *m, bool has_colours, pieces *q)
 {
     const plm_surfels *s = q->patches;
     uint32_t about[MOST_ABOUT];
@@ -134,11 +139,13 @@ static void judge_pieces(const plm_marker *m, pieces *q)
         if (largest < 0 || q->size[n] > q->size[largest]) largest = n;
         const float *place = m->scene->stand.place[k];
         const double p[3] = {place[0], place[1], place[2]};
-        if (!q->stays[n]) q->stays[n] = !close_to_ground(m, p);
+        q->close[n] += close_to_ground(m, p);
         if (!is_on_wall(m, p)) q->off_wall[n] = true;
     }
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
+        const double most_close = has_colours && !is_green ? MOSTLY_CLOSE : 1;
+        q->stays[n] = (double)q->close[n] < most_close * (double)q->size[n];
         if (n == largest || (is_green && q->off_wall[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
             q->stays[n] = true;
     }
@@ -168,7 +175,7 @@ static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
 {
     count_points(m, plant_share, q);
     join_patches(q);
-    judge_pieces(m, q);
+    judge_pieces(m, plant_share != NULL, q);
     for (size_t i = 0; i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const int32_t n = q->piece[m->patch[i]];
@@ -185,20 +192,22 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .piece = plm_alloc(count, sizeof *q.piece, error),
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
+                .close = plm_alloc_zero(count, sizeof *q.close, error),
                 .off_wall = plm_alloc_zero(count, sizeof *q.off_wall, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
                 .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.off_wall && q.size && q.green &&
-                      q.about && q.green_about;
+    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.close && q.off_wall && q.size &&
+                      q.green && q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
     plm_free(q.piece);
     plm_free(q.stack);
     plm_free(q.stays);
+    plm_free(q.close);
     plm_free(q.off_wall);
     plm_free(q.size);
     plm_free(q.green);

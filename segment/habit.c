@@ -6,11 +6,11 @@
 #include <math.h>
 
 /* Straps are wide from their foot on, where petioles and rachises are narrow: so much of a leaf lies within the first NEAR of how far
- * it reaches from the stem, in shares of its points. Below PETIOLES it has a petiole, whatever noise makes of that; from STRAPS on it has
- * none (600 virtual plants with petioles, from 4 000 points and in 0 to 3 mm of noise: 0.02 to 0.2, large tomatoes in noise to 0.27; 90
- * maize 0.17 to 0.47; real maize and sorghum 0.21 to 0.45; real young tomatoes, whose cotyledons are long, 0.10 to 0.31, and from
- * 0.21 on are better parted as straps). */
-static const double NEAR = 0.3, PETIOLES = 0.15, STRAPS = 0.21;
+ * it reaches from the stem, in shares of its points. What is nearer than OFF_STEM (in R) may be the stem's, thrown out by noise. Below
+ * PETIOLES a leaf has a petiole, whatever noise makes of that; from STRAPS on it has none (600 virtual plants with petioles, from 4 000
+ * points and in 0 to 3 mm of noise: 0.02 to 0.182, large tomatoes in noise to 0.29; 90 maize 0.168 to 0.47; real maize and sorghum 0.21
+ * to 0.45; real young tomatoes, whose cotyledons are long, 0.10 to 0.25, and from 0.2 on are better parted as straps). */
+static const double NEAR = 0.3, OFF_STEM = 0.25, PETIOLES = 0.15, STRAPS = 0.2;
 /* Between, single blades on feet as thick as the stem, without a petiole's tubes, are straps: both weigh half, by the area of the leaves
  * (noise thickens rachises, too: 0.66 of a tomato). */
 static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
@@ -138,16 +138,20 @@ static double blade_elongation(const plm_sketch *sketch, const plm_side_groups *
 }
 
 /* Share of the leaves' points that lies within NEAR of how far their leaf reaches; 1 where no blade has a foot. */
-static double near_share(const plm_side_groups *groups, const distances *leaves)
+static double near_share(const plm_sketch *sketch, const plm_side_groups *groups, const distances *leaves)
 {
+    const double off = OFF_STEM * sketch->scale.radius;
     size_t near = 0, all = 0;
     for (size_t g = 0; g < groups->count; g++) {
         size_t points;
         float *value = rows_of(leaves, g, &points);
-        if (!groups->group[g].has_foot || !groups->group[g].blades || !points) continue;
-        const float reach = plm_quantile(value, points, 1 - ENDS);
-        for (size_t k = 0; k < points; k++) near += value[k] < NEAR * reach;
-        all += points;
+        if (!groups->group[g].has_foot || !groups->group[g].blades) continue;
+        const double reach = plm_quantile(value, points, 1 - ENDS) - off;
+        for (size_t k = 0; k < points; k++) {
+            if (value[k] < off) continue;
+            near += value[k] - off < NEAR * reach;
+            all++;
+        }
     }
     return all ? (double)near / (double)all : 1;
 }
@@ -171,7 +175,7 @@ static plm_status find_leaf_shape(const plm_sketch *sketch, const plm_side_group
         gather_distances(sketch, groups, groups->blade, groups->blade_count, &blades);
         gather_distances(sketch, groups, leaf, groups->count, &leaves);
         shape->elongation = blade_elongation(sketch, groups, &blades);
-        shape->near = near_share(groups, &leaves);
+        shape->near = near_share(sketch, groups, &leaves);
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
