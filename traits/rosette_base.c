@@ -6,6 +6,7 @@
 #include "traits/rosette_base.h"
 
 #include "cloud/linear.h"
+#include "cloud/order.h"
 #include "traits/axis.h"
 #include "traits/plant_foot.h"
 #include "traits/soil_base.h"
@@ -80,8 +81,10 @@ static bool underside_of(const plm_scene *scene, const plm_axis *axis, const dou
 }
 
 /* Draws the heights towards their mean as far as they are unsure: each becomes what is known of it beside the others, with the
- * standard error that is its own. Gives that of the mean, as far as they share it. */
-static double draw_together(underside *side, size_t count)
+ * standard error that is its own. Gives that of the mean, as far as they share it. apart: SD of the true heights, at least, as petioles
+ * that come out of one crown lie on each other. (Of few unsure heights moments often tell none, and the least is the mean then: bases of 134
+ * virtual rosettes in noise were 0.22 mm too high, and are 0.09.) */
+static double draw_together(underside *side, size_t count, double apart)
 {
     double weights = 0, squares = 0, mean = 0, chi = 0;
     for (size_t i = 0; i < count; i++) {
@@ -91,7 +94,8 @@ static double draw_together(underside *side, size_t count)
     mean /= weights;
     for (size_t i = 0; i < count; i++) chi += pow((side[i].height - mean) / side[i].std_error, 2);
     /* variance of the true heights, by moments (R. DerSimonian, N. Laird 1986) */
-    const double between = fmax(chi - (double)(count - 1), 0) / (weights - squares / weights);
+    const double moments = fmax(chi - (double)(count - 1), 0) / (weights - squares / weights);
+    const double between = fmax(moments, apart * apart);
     double centre = 0, centre_weights = 0;
     for (size_t i = 0; i < count; i++) {
         const double w = 1 / (side[i].std_error * side[i].std_error + between);
@@ -106,6 +110,13 @@ static double draw_together(underside *side, size_t count)
         shared += pow(1 - kept, 2) / centre_weights / (double)count;
     }
     return sqrt(shared);
+}
+
+/* radius: room for count. */
+static double usual_radius(const underside *side, size_t count, double *radius)
+{
+    for (size_t i = 0; i < count; i++) radius[i] = side[i].radius;
+    return plm_order_median(radius, count);
 }
 
 /* Mean and SD of the least of independent normal values, from the chance that all lie above a height. */
@@ -164,15 +175,15 @@ static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], do
     return PLM_OK;
 }
 
-/* Weighs what petioles tell with what was seen. In noise what was seen lies no lower than the base: as far as it lies higher than
- * can be chance it tells nothing, and just above soil, where labels end in the noise of both, nothing at all. Where it lies lower than
- * is told (leaves may hang), or is known better, it stays: false. A scan without noise shows points of the base or none, and how far it
+/* Weighs what petioles tell with what was seen. In noise what was seen lies no lower than the base, which is hidden: as far as it lies
+ * higher than can be chance it tells nothing, and just above soil, where labels end in the noise of both, nothing at all. Where it lies
+ * lower than is told (leaves may hang) it stays: false. A scan without noise shows points of the base or none, and how far it
  * lies beyond them is a guess: what is told counts as far as the two may be apart by chance. */
 static bool join(const underside *told, bool standing, plm_extreme *base)
 {
     const double above = -base->value - told->height;
     if (!(base->std_error > 0) || !isfinite(above)) return false;
-    if (is_noisy(base) && (!(above > 0) || !(standing || told->std_error < base->std_error))) return false;
+    if (is_noisy(base) && !(above > 0)) return false;
     double told_squared = told->std_error * told->std_error, seen_squared = base->std_error * base->std_error;
     if (standing)
         seen_squared = INFINITY;
@@ -203,15 +214,16 @@ plm_status plm_rosette_base(const plm_scene *scene, double height, plm_extreme *
     plm_status status = plm_plant_foot(scene, foot, &foot_error, &found, error);
     if (status != PLM_OK || !found) return status;
     underside *side = plm_alloc(scene->organ_count, sizeof *side, error);
-    if (!side) return PLM_E_MEMORY;
+    double *radius = plm_alloc(scene->organ_count, sizeof *radius, error);
+    if (!side || !radius) status = PLM_E_MEMORY;
     size_t count = 0;
-    for (size_t k = 0; k < scene->organ_count; k++) {
+    for (size_t k = 0; k < scene->organ_count && status == PLM_OK; k++) {
         const plm_organ *organ = &scene->organ[k];
         if (organ->label == PLM_LABEL_PETIOLE && organ->axis)
             count += underside_of(scene, organ->axis, foot, foot_error, &side[count]);
     }
     if (count >= FEWEST_PETIOLES) {
-        const double shared = draw_together(side, count);
+        const double apart = usual_radius(side, count, radius), shared = draw_together(side, count, apart);
         underside told = least_of(side, count);
         told.std_error = hypot(hypot(told.std_error, shared), noise_unknown * told.noise);
         bool standing = false;
@@ -220,5 +232,6 @@ plm_status plm_rosette_base(const plm_scene *scene, double height, plm_extreme *
         *on_soil = standing && *lowered;
     }
     plm_free(side);
+    plm_free(radius);
     return status;
 }

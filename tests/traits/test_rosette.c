@@ -199,6 +199,31 @@ static void the_soil_about_a_rosette_tells_its_base(void **unused)
     }
 }
 
+/* The underside of the lowest petiole is hidden where they meet. Petioles that noise makes alike all told their mean, and known no better
+ * than what was seen they told nothing: the mean error was -0.10 mm of these from depth cameras and -0.36 mm of these splats. */
+static void the_hidden_base_is_not_too_high(void **unused)
+{
+    (void)unused;
+    static const struct {
+        plm_scanner scanner;
+        uint64_t seed[5];
+    } scans[] = {{PLM_SCANNER_RGBD, {77017, 77019, 77014, 37140, 37160}},
+                 {PLM_SCANNER_SPLAT, {77005, 77006, 78001, 78002, 76003}}};
+    for (size_t k = 0; k < COUNT(scans); k++) {
+        double mean = 0;
+        for (size_t i = 0; i < COUNT(scans[k].seed); i++) {
+            plm_scan_options how = depth_camera_at(scans[k].seed[i], false);
+            how.scanner = scans[k].scanner;
+            double built;
+            const plm_estimate height = height_by(&how, &built);
+            assert_near(height.value, built, 2.5 * height.std_error);
+            mean += (height.value - built) / (double)COUNT(scans[k].seed);
+        }
+        print_message("mean %.3f mm\n", 1e3 * mean);
+        assert_near(mean, 0, 0.2e-3);
+    }
+}
+
 /* The petioles that this camera sees are no longer than 0.12 of the plant's size: no more than folds of a single leaf. */
 static void petioles_that_are_hardly_seen_bear_leaves(void **unused)
 {
@@ -334,6 +359,7 @@ int main(void)
         cmocka_unit_test(points_that_coincide_have_a_height),
         plant_case(soil_under_a_rosette_is_no_foot),
         plant_case(the_soil_about_a_rosette_tells_its_base),
+        plant_case(the_hidden_base_is_not_too_high),
         plant_case(petioles_that_are_hardly_seen_bear_leaves),
         plant_case(a_leaf_narrower_than_the_noise_is_level_across),
         plant_case(a_few_points_say_how_little_they_know),
