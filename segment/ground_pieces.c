@@ -15,22 +15,24 @@ static const float CLEAR_SHARE = 0.8f; /* ... more is */
 static const double FILLED = 0.25;
 /* In voxels, off the wall that was traced: a piece that nowhere leaves it by more is the wall's, whatever its colour. */
 static const double ON_WALL = 0.15;
-/* Patches close to the ground in a piece that is not of the plant's colour, of its own, at least: it is the ground's though the rest
- * reaches away (the tail of 5.6 mm of noise about a rim: 0.9 and more). */
-static const double MOSTLY_CLOSE = 0.25;
+/* At a pot, patches close to the ground in a piece of the ground's colour, of its own, at least: it is the ground's though the rest
+ * reaches away (the tail of 5.6 mm of noise about a rim: 0.9). */
+static const double MOSTLY_CLOSE = 0.6;
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
 typedef struct pieces {
     const plm_surfels *patches;
-    double *ground, *plantlike; /* of each patch: how many of its points are ground, how many have the plant's colour */
-    int32_t *piece;             /* of each patch: number of its piece, GROUND, THIN, or OPEN */
+    double *ground;               /* of each patch: how many of its points are ground, ... */
+    double *plantlike, *soillike; /* ... have surely the plant's colour, have not the plant's */
+    int32_t *piece;               /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
-    bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour */
+    bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour; not
+                       where it has the ground's and lies mostly close to it */
     size_t *close;  /* of each piece: patches close to the ground */
     bool *off_wall; /* of each piece: it leaves the wall, or stands over the soil */
     size_t *size;   /* of each piece, patches */
-    double *green;  /* of each piece: patches of the plant's colour */
+    double *green, *brown;       /* of each piece: patches of the plant's colour, and not of it */
     size_t *about, *green_about; /* of each piece: patches in and about its own, those mostly of the plant's colour */
     int32_t count;
 } pieces;
@@ -93,7 +95,10 @@ static void count_points(const plm_marker *m, const float *plant_share, pieces *
         const int32_t k = m->patch[i];
         if (k < 0) continue;
         q->ground[k] += m->zone[i] != PLM_ZONE_FREE;
-        if (plant_share) q->plantlike[k] += plant_share[plm_shade(m->cloud->rgb[i])] > CLEAR_SHARE;
+        if (!plant_share) continue;
+        const float share = plant_share[plm_shade(m->cloud->rgb[i])];
+        q->plantlike[k] += share > CLEAR_SHARE;
+        q->soillike[k] += share < PLANT_SHARE;
     }
     for (size_t k = 0; k < q->patches->count; k++) {
         const bool ground = q->ground[k] > 0.5 * q->patches->points[k];
@@ -123,7 +128,7 @@ static void join_patches(pieces *q)
     }
 }
 
-static void judge_pieces(const plm_marker *m, bool has_colours, pieces *q)
+static void judge_pieces(const plm_marker *m, pieces *q)
 {
     const plm_surfels *s = q->patches;
     uint32_t about[MOST_ABOUT];
@@ -133,6 +138,7 @@ static void judge_pieces(const plm_marker *m, bool has_colours, pieces *q)
         if (n < 0) continue;
         q->size[n]++;
         q->green[n] += q->plantlike[k] / s->points[k];
+        q->brown[n] += q->soillike[k] / s->points[k];
         const size_t count = patches_about(s, k, 1, about);
         q->about[n] += count;
         for (size_t j = 0; j < count; j++) q->green_about[n] += 2 * q->plantlike[about[j]] > s->points[about[j]];
@@ -144,7 +150,8 @@ static void judge_pieces(const plm_marker *m, bool has_colours, pieces *q)
     }
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
-        const double most_close = has_colours && !is_green ? MOSTLY_CLOSE : 1;
+        const bool is_brown = m->scene->has_pot && q->brown[n] > 0.5 * (double)q->size[n];
+        const double most_close = is_brown ? MOSTLY_CLOSE : 1;
         q->stays[n] = (double)q->close[n] < most_close * (double)q->size[n];
         if (n == largest || (is_green && q->off_wall[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
             q->stays[n] = true;
@@ -175,7 +182,7 @@ static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
 {
     count_points(m, plant_share, q);
     join_patches(q);
-    judge_pieces(m, plant_share != NULL, q);
+    judge_pieces(m, q);
     for (size_t i = 0; i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const int32_t n = q->piece[m->patch[i]];
@@ -189,6 +196,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     const size_t count = m->scene->stand.surfels->count;
     pieces q = {.ground = plm_alloc_zero(count, sizeof *q.ground, error),
                 .plantlike = plm_alloc_zero(count, sizeof *q.plantlike, error),
+                .soillike = plm_alloc_zero(count, sizeof *q.soillike, error),
                 .piece = plm_alloc(count, sizeof *q.piece, error),
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
@@ -196,14 +204,16 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .off_wall = plm_alloc_zero(count, sizeof *q.off_wall, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
+                .brown = plm_alloc_zero(count, sizeof *q.brown, error),
                 .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room = q.ground && q.plantlike && q.piece && q.stack && q.stays && q.close && q.off_wall && q.size &&
-                      q.green && q.about && q.green_about;
+    const bool room = q.ground && q.plantlike && q.soillike && q.piece && q.stack && q.stays && q.close && q.off_wall &&
+                      q.size && q.green && q.brown && q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
+    plm_free(q.soillike);
     plm_free(q.piece);
     plm_free(q.stack);
     plm_free(q.stays);
@@ -211,6 +221,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.off_wall);
     plm_free(q.size);
     plm_free(q.green);
+    plm_free(q.brown);
     plm_free(q.about);
     plm_free(q.green_about);
     return room ? PLM_OK : PLM_E_MEMORY;

@@ -7,21 +7,26 @@
 
 /* Straps are wide from their foot on, where petioles and rachises are narrow: so much of a leaf lies within the first NEAR of how far
  * it reaches from the stem, in shares of its points. What is nearer than OFF_STEM (in R) may be the stem's, thrown out by noise. Below
- * PETIOLES a leaf has a petiole, whatever noise makes of that; from STRAPS on it has none (600 virtual plants with petioles, from 4 000
- * points and in 0 to 3 mm of noise: 0.02 to 0.182, large tomatoes in noise to 0.29; 90 maize 0.168 to 0.47; real maize and sorghum 0.21
- * to 0.45; real young tomatoes, whose cotyledons are long, 0.10 to 0.25, and from 0.2 on are better parted as straps). */
-static const double NEAR = 0.3, OFF_STEM = 0.25, PETIOLES = 0.15, STRAPS = 0.2;
-/* Between, single blades on feet as thick as the stem, without a petiole's tubes, are straps: both weigh half, by the area of the leaves
- * (noise thickens rachises, too: 0.66 of a tomato). */
+ * PETIOLES a leaf has a petiole, whatever noise makes of that; from SURE on it has none. (600 virtual plants with petioles, from 4 000
+ * points and in 0 to 3 mm of noise: 0.02 to 0.206, large tomatoes in noise to 0.29; 90 maize 0.168 to 0.47; real maize and sorghum 0.21
+ * to 0.45; real young tomatoes, whose cotyledons are long, 0.10 to 0.25, and from 0.2 on are better parted as straps.) */
+static const double NEAR = 0.3, OFF_STEM = 0.25, PETIOLES = 0.15, SURE = 0.26;
+/* Single blades have none from this on; compound leaves, whose lowest leaflets may be near, if feet and tubes (below) say so as well
+ * (0.72 and more of two real tomatoes and a maize; 0 of a virtual tomato). */
+static const double STRAPS = 0.2, STRAP_OF_MANY = 0.4;
+/* Below that, too, single blades on feet as thick as the stem, without a petiole's tubes, are straps: both weigh half, by the area of the
+ * leaves. (Of compound leaves feet alone say nothing: noise thickens rachises, 0.66 of a tomato.) */
 static const double STRAP_TUBE = 0.85;  /* share of tube at a foot: less is no petiole, and ... */
 static const double STRAP_RADIUS = 0.9; /* ... side tubes as thick as this, in radii of the stem, are leaf feet */
 static const double STRAP_EVIDENCE = 0.5;
 /* In less noise than this (in radii of the stem) what looks like tubes are no blades that it makes round. Their share off the stem then
- * says folds, together with feet (0.75 of a real tomato of long cotyledons; 0.62 at most of others, 0.25 of virtual plants with petioles). */
+ * says folds: it and what feet say, summed (0.75 of a real tomato of long cotyledons; 0.62 at most of others, 0.25 of virtual plants with
+ * petioles). */
 static const double CLEAR_NOISE = 0.2, STRAP_WITH_TUBES = 0.7;
-/* More than this by themselves, where no blade has a foot, or that noise does not make: straps, or so few points that nothing tells
- * petioles (large tomatoes of 1 600 and 5 600 points: F1 0.9 and 0.7 as straps, 0.6 and 0.3 with petioles). */
-static const double TUBE_LEAVES = 0.5;
+/* More than this by themselves: straps that look like it, where no blade has a foot; or so few points that nothing tells petioles, as the
+ * balls that hold enough of them are large against the plant (large tomatoes of 1 600 and 5 600 points, 0.074 and 0.054 of its size: F1 0.9
+ * and 0.7 as straps, 0.6 and 0.3 with petioles; 0.03 is usual). */
+static const double TUBE_LEAVES = 0.5, LARGE_BALLS = 0.04;
 /* In more noise than this it hides feet, and parts what hangs far out from straps that touch at theirs, so that less of them seems near; their
  * blades are long (squared length over area, both summed: 2.1 to 2.5 of six maize, 0.95 at most of plants with petioles). */
 static const double STRAP_NOISE = 0.3, STRAP_LONG = 1.5;
@@ -137,7 +142,7 @@ static double blade_elongation(const plm_sketch *sketch, const plm_side_groups *
     return area > 0 ? squared / area : 0;
 }
 
-/* Share of the leaves' points that lies within NEAR of how far their leaf reaches; 1 where no blade has a foot. */
+/* Share of the leaves' points that lies within NEAR of how far their leaf reaches; STRAPS where none tells. */
 static double near_share(const plm_sketch *sketch, const plm_side_groups *groups, const distances *leaves)
 {
     const double off = OFF_STEM * sketch->scale.radius;
@@ -153,7 +158,7 @@ static double near_share(const plm_sketch *sketch, const plm_side_groups *groups
             all++;
         }
     }
-    return all ? (double)near / (double)all : 1;
+    return all ? (double)near / (double)all : STRAPS;
 }
 
 typedef struct leaf_shape {
@@ -165,15 +170,13 @@ static plm_status find_leaf_shape(const plm_sketch *sketch, const plm_side_group
 {
     plm_scratch scratch = {.error = error};
     const size_t count = sketch->working.count;
-    int32_t *leaf = plm_scratch_take(&scratch, count, sizeof *leaf);
     distances blades = {.value = plm_scratch_take(&scratch, count, sizeof *blades.value),
                         .end = plm_scratch_take(&scratch, groups->blade_count + 1, sizeof *blades.end)};
     distances leaves = {.value = plm_scratch_take(&scratch, count, sizeof *leaves.value),
                         .end = plm_scratch_take(&scratch, groups->count + 1, sizeof *leaves.end)};
     if (!scratch.failed) {
-        for (size_t i = 0; i < count; i++) leaf[i] = sketch->is_stem[i] ? -1 : sketch->group[i];
         gather_distances(sketch, groups, groups->blade, groups->blade_count, &blades);
-        gather_distances(sketch, groups, leaf, groups->count, &leaves);
+        gather_distances(sketch, groups, sketch->group, groups->count, &leaves);
         shape->elongation = blade_elongation(sketch, groups, &blades);
         shape->near = near_share(sketch, groups, &leaves);
     }
@@ -214,12 +217,13 @@ static bool are_straps(const plm_sketch *sketch, const leaf_tally *tally, const 
     const plm_scale *scale = &sketch->scale;
     const double tubes = tube_leaves(sketch);
     const bool is_clear = scale->noise < CLEAR_NOISE * scale->stem_radius;
-    if (!(tally->area > 0) || (is_clear && tubes > TUBE_LEAVES)) return tubes > TUBE_LEAVES;
-    if (shape->near < PETIOLES || shape->near > STRAPS) return shape->near > STRAPS;
+    const bool is_sparse = is_clear && scale->radius > LARGE_BALLS * scale->size;
+    if (!(tally->area > 0) || (is_sparse && tubes > TUBE_LEAVES)) return tubes > TUBE_LEAVES;
+    if (shape->near < PETIOLES || shape->near > SURE) return shape->near > SURE;
     if (scale->noise > STRAP_NOISE * scale->stem_radius && shape->elongation > STRAP_LONG) return true;
-    if (are_compound(tally)) return false;
     const double feet = tally->strap / tally->area;
-    return feet > STRAP_EVIDENCE || (is_clear && feet + tubes > STRAP_WITH_TUBES);
+    if (are_compound(tally)) return shape->near > STRAPS && feet + tubes > STRAP_OF_MANY;
+    return shape->near > STRAPS || feet > STRAP_EVIDENCE || (is_clear && feet + tubes > STRAP_WITH_TUBES);
 }
 
 plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *groups, plm_habit *habit, plm_error *error)

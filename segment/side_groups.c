@@ -220,6 +220,22 @@ static bool find_touches(work *w, size_t feet, bool *alive)
 
 /* ---- Blades within groups ------------------------------------------------------------------------------------- */
 
+/* Blades that are too small each may be a young leaf's leaflets: of a group that has a foot and no larger ones they are one together. */
+static plm_status count_specks(work *w)
+{
+    plm_side_groups *out = w->out;
+    double *sum = plm_scratch_take(&w->scratch, out->count + 1, sizeof *sum);
+    if (!sum) return PLM_E_MEMORY;
+    for (size_t b = 0; b < out->blade_count; b++) sum[out->blade_group[b]] += out->blade_area[b];
+    for (size_t g = 0; g < out->count; g++) {
+        plm_side_group *group = &out->group[g];
+        if (group->blades || !group->has_foot || sum[g] < plm_blade_least(w->sketch)) continue;
+        group->blade_area = sum[g];
+        group->blades = 1;
+    }
+    return PLM_OK;
+}
+
 static plm_status find_blades(work *w, plm_error *error)
 {
     plm_sketch *s = w->sketch;
@@ -246,7 +262,7 @@ static plm_status find_blades(work *w, plm_error *error)
         group->blade_area += out->blade_area[b];
         group->blades++;
     }
-    return PLM_OK;
+    return s->stem.count ? count_specks(w) : PLM_OK;
 }
 
 /* Pieces that no foot reaches become groups without a foot. */

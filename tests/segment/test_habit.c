@@ -80,7 +80,7 @@ static void two_petioles_on_the_rest_of_a_stem_bear_a_leaf_each(void **unused)
                  0.9);
 }
 
-/* Short petioles look as thick as the stem in noise, but blades as wide as long are no straps. */
+/* Short petioles look as thick as the stem in noise, but little of such leaves is near to it. */
 static void wide_blades_on_thick_petioles_are_no_straps(void **unused)
 {
     (void)unused;
@@ -144,7 +144,7 @@ static void many_blades_a_leaf_are_no_straps(void **unused)
     assert_int_equal(habit, PLM_HABIT_COMPOUND);
 }
 
-/* Noise as large as the rachises' radius makes all of this tomato's as thick as its stem, but its blades begin far from that. */
+/* Noise as large as the rachises' radius makes all of this tomato's as thick as its stem, but little of its leaves is near to that. */
 static void blades_on_long_rachises_are_no_straps(void **unused)
 {
     (void)unused;
@@ -180,11 +180,11 @@ static void bare_branches_bear_no_leaves(void **unused)
     }
 }
 
-/* From depth cameras in noise of a third of the stem's radius. Maize whose blades seem as wide as those on petioles, but begin at the
+/* From depth cameras in noise of a third of the stem's radius. Maize whose blades seem as wide as those on petioles, but are near to the
  * stem, were simple (76006: areas 36 to 45 % too small); tomatoes whose leaflets seem round, but are far from the stem, were straps (76001: areas
  * 52 to 151 % too large). Maize most of whose leaves hang on one foot, so that it has many blades far from the stem, were compound
  * (57101: 3 of 5 leaves). */
-static void what_noise_makes_wide_or_round_is_told_by_where_it_begins(void **unused)
+static void what_noise_makes_wide_or_round_is_told_by_what_is_near(void **unused)
 {
     (void)unused;
     static const struct {
@@ -208,16 +208,19 @@ static void what_noise_makes_wide_or_round_is_told_by_where_it_begins(void **unu
     }
 }
 
-/* What a made plant is taken for: six leaves of one or two blades each that begin START R from the stem and are LENGTH R long. */
+/* A made plant: six leaves of one or two blades each that reach REACH R from the stem. */
 typedef struct made_plant {
-    double near;   /* share of the leaves' points that lie near to the stem */
-    double feet;   /* radius of the tubes at the leaves' feet over the stem's */
-    double tubes;  /* share of what is off the stem that looks like them */
-    double noise;  /* in radii of the stem */
-    double width;  /* of a blade, in R */
-    size_t blades; /* a leaf */
+    double near;                                /* share of the leaves' points that lie near to the stem, ... */
+    double at_stem;                             /* ... and share that lies so near to it that it may be the stem's */
+    double feet;                                /* radius of the tubes at the leaves' feet over the stem's */
+    double tubes;                               /* share of what is off the stem that looks like them */
+    double noise;                               /* in radii of the stem */
+    double width;                               /* of a blade, in R */
+    size_t blades;                              /* a leaf */
+    bool is_sparse, has_no_feet, has_bare_feet; /* bare: without tube */
 } made_plant;
 
+/* What it is taken for. */
 static plm_habit habit_of(const made_plant *made)
 {
     enum { GROUPS = 6, BLADES = 2 * GROUPS, POINTS = 200, ROWS = BLADES * POINTS + POINTS };
@@ -229,12 +232,15 @@ static plm_habit habit_of(const made_plant *made)
     static int32_t blade[ROWS], leaf[ROWS];
     plm_side_group group[GROUPS] = {0};
     double blade_area[BLADES];
-    plm_sketch sketch = {
-        .scale = {.radius = R, .stem_radius = R / 3, .noise = made->noise * R / 3, .size = 76 * R, .has_tubes = true},
-        .is_tube = is_tube,
-        .is_stem = is_stem,
-        .point = point,
-        .group = leaf};
+    plm_sketch sketch = {.scale = {.radius = R,
+                                   .stem_radius = R / 3,
+                                   .noise = made->noise * R / 3,
+                                   .size = (made->is_sparse ? 15 : 76) * R,
+                                   .has_tubes = true},
+                         .is_tube = is_tube,
+                         .is_stem = is_stem,
+                         .point = point,
+                         .group = leaf};
     plm_side_groups groups = {.count = GROUPS,
                               .group = group,
                               .distance = distance,
@@ -251,13 +257,16 @@ static plm_habit habit_of(const made_plant *made)
         point[i].radius = (float)(R / 3);
         blade[i] = is_stem[i] ? -1 : (int32_t)b;
         leaf[i] = is_stem[i] ? -1 : (int32_t)(b % GROUPS);
-        distance[i] = (float)(R * (along < made->near ? 2 : REACH - LENGTH + LENGTH * along));
+        const double place = along < made->near                   ? 2
+                             : along < made->near + made->at_stem ? 0.1
+                                                                  : REACH - LENGTH + LENGTH * along;
+        distance[i] = (float)(R * place);
     }
     for (size_t b = 0; b < blades; b++) {
         plm_side_group *g = &group[b % GROUPS];
         blade_area[b] = LENGTH * made->width * R * R;
-        *g = (plm_side_group){.has_foot = true,
-                              .tube_share = 1,
+        *g = (plm_side_group){.has_foot = !made->has_no_feet,
+                              .tube_share = !made->has_bare_feet,
                               .tube_radius = made->feet * R / 3,
                               .blade_area = g->blade_area + blade_area[b],
                               .blades = g->blades + 1};
@@ -268,7 +277,7 @@ static plm_habit habit_of(const made_plant *made)
     return habit;
 }
 
-/* Half of the evidence of feet is that they are as thick as the stem; the other half, that they are no tubes, is not made. */
+/* Feet that are as thick as the stem are half of their evidence, that they are no tubes is the other half. */
 static void straps_are_wide_near_to_the_stem(void **unused)
 {
     (void)unused;
@@ -280,14 +289,22 @@ static void straps_are_wide_near_to_the_stem(void **unused)
         {{.near = 0.1, .feet = 1, .tubes = 0.6, .noise = 0.4, .width = 2, .blades = 2}, PLM_HABIT_COMPOUND},
         {{.near = 0.3, .feet = 0.5, .noise = 0.1, .width = 8, .blades = 1}, PLM_HABIT_STRAP},
         {{.near = 0.3, .feet = 0.5, .noise = 0.1, .width = 8, .blades = 2}, PLM_HABIT_STRAP},
+        {{.near = 0.23, .feet = 0.5, .noise = 0.1, .width = 8, .blades = 1}, PLM_HABIT_STRAP},
+        {{.near = 0.23, .feet = 0.5, .noise = 0.1, .width = 8, .blades = 2}, PLM_HABIT_COMPOUND},
+        {{.near = 0.23, .feet = 1, .noise = 0.1, .width = 8, .blades = 2}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 1, .tubes = 0.1, .noise = 0.1, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
         {{.near = 0.18, .feet = 1, .tubes = 0.4, .noise = 0.1, .width = 8, .blades = 1}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 1, .tubes = 0.4, .noise = 0.1, .width = 8, .blades = 2}, PLM_HABIT_COMPOUND},
         {{.near = 0.18, .feet = 1, .tubes = 0.4, .noise = 0.25, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
+        {{.near = 0.18, .feet = 1, .noise = 0.25, .width = 8, .blades = 1, .has_bare_feet = true}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 3, .blades = 2}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 24, .blades = 2}, PLM_HABIT_COMPOUND},
-        {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1}, PLM_HABIT_STRAP},
-        {{.near = 0.1, .feet = 1, .tubes = 0.4, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
+        {{.near = 0.1, .at_stem = 0.1, .feet = 1, .width = 8, .blades = 1, .has_bare_feet = true}, PLM_HABIT_SIMPLE},
+        {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1, .is_sparse = true}, PLM_HABIT_STRAP},
+        {{.near = 0.1, .feet = 1, .tubes = 0.4, .width = 8, .blades = 1, .is_sparse = true}, PLM_HABIT_SIMPLE},
+        {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1}, PLM_HABIT_SIMPLE},
+        {{.near = 0.1, .tubes = 0.6, .noise = 0.3, .width = 8, .blades = 1, .has_no_feet = true}, PLM_HABIT_STRAP},
+        {{.near = 0.3, .tubes = 0.4, .noise = 0.3, .width = 8, .blades = 1, .has_no_feet = true}, PLM_HABIT_SIMPLE},
     };
     for (size_t k = 0; k < sizeof plant / sizeof *plant; k++)
         assert_int_equal(habit_of(&plant[k].made), plant[k].habit);
@@ -340,7 +357,7 @@ int main(void)
                                        plant_case(blades_on_one_foot_are_leaflets),
                                        plant_case(blades_on_long_rachises_are_no_straps),
                                        plant_case(bare_branches_bear_no_leaves),
-                                       plant_case(what_noise_makes_wide_or_round_is_told_by_where_it_begins),
+                                       plant_case(what_noise_makes_wide_or_round_is_told_by_what_is_near),
                                        plant_case(what_has_petioles_is_no_strap_however_thick_they_look),
                                        cmocka_unit_test(straps_are_wide_near_to_the_stem)};
     return run_cases(tests);
