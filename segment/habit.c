@@ -27,9 +27,10 @@ static const double CLEAR_NOISE = 0.2, STRAP_WITH_TUBES = 0.7;
  * balls that hold enough of them are large against the plant (large tomatoes of 1 600 and 5 600 points, 0.074 and 0.054 of its size: F1 0.9
  * and 0.7 as straps, 0.6 and 0.3 with petioles; 0.03 is usual). */
 static const double TUBE_LEAVES = 0.5, LARGE_BALLS = 0.04;
-/* In more noise than this it hides feet, and parts what hangs far out from straps that touch at theirs, so that less of them seems near; their
- * blades are long (squared length over area, both summed: 2.1 to 2.5 of six maize, 0.95 at most of plants with petioles). */
-static const double STRAP_NOISE = 0.3, STRAP_LONG = 1.5;
+/* In more noise than this it hides feet, and parts what hangs far out from straps that touch at theirs, so that less of them seems near.
+ * Their blades are long (squared length over area, both summed: 2.1 to 2.5 of six maize in 0.36 radii and more, 0.95 at most of plants with
+ * petioles), and feet and tubes say something, summed (0.36 to 0.83; 0 of a pepper of 2.2). */
+static const double STRAP_NOISE = 0.33, STRAP_LONG = 1.5, STRAP_HINT = 0.2;
 /* Shares of all points, at least: 0.85 and 0.38 over 30 scans of bare stems; of straps 0.98 at most are tube and 0.38 on the stem,
  * but not both: those with 0.35 on it have 0.66 tube at most. */
 static const double BARE_TUBES = 0.76, BARE_STEM = 0.35;
@@ -220,8 +221,9 @@ static bool are_straps(const plm_sketch *sketch, const leaf_tally *tally, const 
     const bool is_sparse = is_clear && scale->radius > LARGE_BALLS * scale->size;
     if (!(tally->area > 0) || (is_sparse && tubes > TUBE_LEAVES)) return tubes > TUBE_LEAVES;
     if (shape->near < PETIOLES || shape->near > SURE) return shape->near > SURE;
-    if (scale->noise > STRAP_NOISE * scale->stem_radius && shape->elongation > STRAP_LONG) return true;
     const double feet = tally->strap / tally->area;
+    const bool is_noisy = scale->noise > STRAP_NOISE * scale->stem_radius;
+    if (is_noisy && shape->elongation > STRAP_LONG && feet + tubes > STRAP_HINT) return true;
     if (are_compound(tally)) return shape->near > STRAPS && feet + tubes > STRAP_OF_MANY;
     return shape->near > STRAPS || feet > STRAP_EVIDENCE || (is_clear && feet + tubes > STRAP_WITH_TUBES);
 }

@@ -299,6 +299,7 @@ static void straps_are_wide_near_to_the_stem(void **unused)
         {{.near = 0.18, .feet = 1, .noise = 0.25, .width = 8, .blades = 1, .has_bare_feet = true}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 3, .blades = 2}, PLM_HABIT_STRAP},
         {{.near = 0.18, .feet = 0.5, .tubes = 0.4, .noise = 0.35, .width = 24, .blades = 2}, PLM_HABIT_COMPOUND},
+        {{.near = 0.18, .feet = 0.5, .noise = 0.35, .width = 3, .blades = 2}, PLM_HABIT_COMPOUND},
         {{.near = 0.1, .at_stem = 0.1, .feet = 1, .width = 8, .blades = 1, .has_bare_feet = true}, PLM_HABIT_SIMPLE},
         {{.near = 0.1, .feet = 1, .tubes = 0.6, .width = 8, .blades = 1, .is_sparse = true}, PLM_HABIT_STRAP},
         {{.near = 0.1, .feet = 1, .tubes = 0.4, .width = 8, .blades = 1, .is_sparse = true}, PLM_HABIT_SIMPLE},
