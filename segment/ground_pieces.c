@@ -15,9 +15,9 @@ static const float CLEAR_SHARE = 0.8f; /* ... more is */
 static const double FILLED = 0.25;
 /* In voxels, off the wall that was traced: a piece that nowhere leaves it by more is the wall's, whatever its colour. */
 static const double ON_WALL = 0.15;
-/* At a pot, patches close to the ground in a piece of the ground's colour, of its own, at least: it is the ground's though the rest
- * reaches away (the tail of 5.6 mm of noise about a rim: 0.9). */
-static const double MOSTLY_CLOSE = 0.6;
+/* At a pot, patches close to the ground in a piece that has not the plant's colour, of its own, at least: it is the ground's though the
+ * rest reaches away (the tail of 5.6 mm of noise about a rim: 0.9; of soil about rosettes: 0.27 and more). */
+static const double CLOSE = 0.25;
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
@@ -28,7 +28,7 @@ typedef struct pieces {
     int32_t *piece;               /* of each patch: number of its piece, GROUND, THIN, or OPEN */
     uint32_t *stack;
     bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour; not
-                       where it has the ground's and lies mostly close to it */
+                       where it has the ground's and lies partly close to it */
     size_t *close;  /* of each piece: patches close to the ground */
     bool *off_wall; /* of each piece: it leaves the wall, or stands over the soil */
     size_t *size;   /* of each piece, patches */
@@ -151,7 +151,7 @@ static void judge_pieces(const plm_marker *m, pieces *q)
     for (int32_t n = 0; n < q->count; n++) {
         const bool is_green = q->green[n] > 0.5 * (double)q->size[n];
         const bool is_brown = m->scene->has_pot && q->brown[n] > 0.5 * (double)q->size[n];
-        const double most_close = is_brown ? MOSTLY_CLOSE : 1;
+        const double most_close = is_brown ? CLOSE : 1;
         q->stays[n] = (double)q->close[n] < most_close * (double)q->size[n];
         if (n == largest || (is_green && q->off_wall[n] && (double)q->green_about[n] > FILLED * (double)q->about[n]))
             q->stays[n] = true;
