@@ -220,7 +220,8 @@ static bool find_touches(work *w, size_t feet, bool *alive)
 
 /* ---- Blades within groups ------------------------------------------------------------------------------------- */
 
-/* Blades that are too small each may be a young leaf's leaflets: of a group that has a foot and no larger ones they are one together. */
+/* Of compound plants blades that are too small each may be a young leaf's leaflets: of a group that has a foot and no larger ones they are
+ * one together. (On others they are what noise makes of a petiole: a real tomato that passes for simple got a leaf of it.) */
 static plm_status count_specks(work *w)
 {
     plm_side_groups *out = w->out;
@@ -262,7 +263,7 @@ static plm_status find_blades(work *w, plm_error *error)
         group->blade_area += out->blade_area[b];
         group->blades++;
     }
-    return s->stem.count ? count_specks(w) : PLM_OK;
+    return w->blade_cost > 1 ? count_specks(w) : PLM_OK;
 }
 
 /* Pieces that no foot reaches become groups without a foot. */

@@ -28,7 +28,7 @@ static void add_sheet(plm_sketch *sketch, double x, double y, double length, dou
 
 /* What the one group on a stem is like: a petiole of 14 mm, two leaflets of such a width, 6 mm long, at its sides, or one.
  * footed: false: a gap of 3 R before the stem. */
-static plm_side_group group_of(double width, bool two, bool footed)
+static plm_side_group group_of(double width, bool two, bool footed, bool compound)
 {
     plm_error error = {0};
     static double node[NODES][3] = {{0, 0, 0}, {0, 0, 0.06}}, radius[NODES] = {1e-3, 1e-3}, along[NODES] = {0, 0.06};
@@ -45,7 +45,7 @@ static plm_side_group group_of(double width, bool two, bool footed)
     if (two) add_sheet(&sketch, gap + 4e-3, -STEP - width, 6e-3, width);
     plm_side_groups groups = {0};
     assert_ok(plm_graph_build((const float(*)[3])xyz, sketch.working.count, 10, 2.3 * STEP, &sketch.graph, &error));
-    assert_ok(plm_side_groups_find(&sketch, 1, &groups, &error));
+    assert_ok(plm_side_groups_find(&sketch, compound ? 2 : 1, &groups, &error));
     assert_int_equal(groups.count, 1);
     const plm_side_group one = groups.group[0];
     plm_side_groups_free(&groups);
@@ -57,7 +57,7 @@ static plm_side_group group_of(double width, bool two, bool footed)
 static void small_leaflets_are_a_leaf_together(void **unused)
 {
     (void)unused;
-    const plm_side_group large = group_of(1.5e-3, true, true), young = group_of(0.5e-3, true, true);
+    const plm_side_group large = group_of(1.5e-3, true, true, true), young = group_of(0.5e-3, true, true, true);
     assert_int_equal(large.blades, 2);
     assert_near(large.blade_area, 18e-6, 4e-6);
     assert_true(young.has_foot);
@@ -68,8 +68,9 @@ static void small_leaflets_are_a_leaf_together(void **unused)
 static void a_speck_is_no_leaf_and_what_is_apart_none_together(void **unused)
 {
     (void)unused;
-    assert_int_equal(group_of(0.5e-3, false, true).blades, 0);
-    const plm_side_group apart = group_of(0.5e-3, true, false);
+    assert_int_equal(group_of(0.5e-3, false, true, true).blades, 0);
+    assert_int_equal(group_of(0.5e-3, true, true, false).blades, 0); /* simple leaves have no leaflets */
+    const plm_side_group apart = group_of(0.5e-3, true, false, true);
     assert_false(apart.has_foot);
     assert_int_equal(apart.blades, 0);
 }
