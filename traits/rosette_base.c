@@ -179,8 +179,8 @@ static plm_status stand_on_soil(const plm_scene *scene, const double foot[2], do
 
 /* Weighs what petioles tell with what was seen. In noise what was seen lies no lower than the base, which is hidden: as far as it lies
  * higher than can be chance it tells nothing, and just above soil, where labels end in the noise of both, nothing at all. Where it lies
- * lower than is told (leaves may hang), or is known far better, it stays: false. A scan without noise shows points of the base or none, and how far it
- * lies beyond them is a guess: what is told counts as far as the two may be apart by chance. */
+ * lower than is told (leaves may hang), or is known far better, it stays: false. A scan without noise shows points of the base or none,
+ * and how far it lies beyond them is a guess: what is told counts as far as the two may be apart by chance. */
 static bool join(const underside *told, bool standing, plm_extreme *base)
 {
     const double above = -base->value - told->height;

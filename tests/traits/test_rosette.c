@@ -117,27 +117,28 @@ static void petioles_mend_what_is_guessed_of_the_base(void **unused)
     }
 }
 
+/* Mean error of heights as splats; each is within its standard errors. */
+static double mean_error_of_splats(const uint64_t *seed, size_t count)
+{
+    double mean = 0;
+    for (size_t k = 0; k < count; k++) {
+        const plm_scan_options splat = {
+            .scanner = PLM_SCANNER_SPLAT, .seed = seed[k], .points = 45000, .noise = 5e-4, .outliers = 0.005};
+        double built;
+        const plm_estimate height = height_by(&splat, &built);
+        assert_near(height.value, built, 2.5 * height.std_error);
+        mean += (height.value - built) / (double)count;
+    }
+    return mean;
+}
+
 /* Noise that was measured on narrow leaves and petioles read so low that heights were 3 and 4 standard errors too large. And what is left
  * of it where few points are looked at, or as many as a tube hides, made them 0.4 mm too large in the mean. */
 static void heights_of_splats_know_the_noise(void **unused)
 {
     (void)unused;
-    const uint64_t seeds[] = {18101, 18106, 40003, 40005, 40006};
-    double mean = 0;
-    for (size_t k = 0; k < COUNT(seeds); k++) {
-        const plm_scan_options splat = {
-            .scanner = PLM_SCANNER_SPLAT, .seed = seeds[k], .points = 45000, .noise = 5e-4, .outliers = 0.005};
-        plm_virtual_plant plant;
-        plm_measurement measurement = measure("plant_height", seeds[k], &splat, false, &plant);
-        const plm_estimate height = measurement.value[0].estimate;
-        const double built = plant.whole.highest - plant.whole.lowest;
-        print_message("%.2f mm too high, standard error %.2f\n", 1e3 * (height.value - built), 1e3 * height.std_error);
-        assert_near(height.value, built, 2.5 * height.std_error);
-        mean += (height.value - built) / COUNT(seeds);
-        plm_measurement_free(&measurement);
-        plm_virtual_plant_free(&plant);
-    }
-    assert_near(mean, 0, 0.2e-3);
+    static const uint64_t seeds[] = {18101, 18106, 40003, 40005, 40006};
+    assert_near(mean_error_of_splats(seeds, COUNT(seeds)), 0, 0.2e-3);
 }
 
 /* A low dome whose top is a spot at which thousands of points coincide: there is no spacing there, and no noise to know. */
@@ -205,16 +206,7 @@ static void the_hidden_base_is_not_too_high(void **unused)
 {
     (void)unused;
     static const uint64_t seeds[] = {77005, 77006, 78001, 78002, 76003};
-    double mean = 0;
-    for (size_t k = 0; k < COUNT(seeds); k++) {
-        const plm_scan_options splat = {
-            .scanner = PLM_SCANNER_SPLAT, .seed = seeds[k], .points = 45000, .noise = 5e-4, .outliers = 0.005};
-        double built;
-        const plm_estimate height = height_by(&splat, &built);
-        assert_near(height.value, built, 2.5 * height.std_error);
-        mean += (height.value - built) / (double)COUNT(seeds);
-    }
-    assert_near(mean, 0, 0.2e-3);
+    assert_near(mean_error_of_splats(seeds, COUNT(seeds)), 0, 0.2e-3);
 }
 
 /* The petioles that this camera sees are no longer than 0.12 of the plant's size: no more than folds of a single leaf. */
