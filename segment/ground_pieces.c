@@ -18,6 +18,10 @@ static const double ON_WALL = 0.15;
 /* At a pot, patches close to the ground in a piece that has not the plant's colour, of its own, at least: it is the ground's though the
  * rest reaches away (the tail of 5.6 mm of noise about a rim: 0.9; of soil about rosettes: 0.27 and more). */
 static const double CLOSE = 0.25;
+/* So many patches above another, not farther off across than so many voxels, and so many times as high over the soil as what is close to
+ * it, may be a stem that it is the foot of; ghosts below leaves are fewer. */
+static const double STEM_CELLS = 3, CLEAR = 2;
+enum { STEM_PATCHES = 6 };
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
@@ -30,6 +34,7 @@ typedef struct pieces {
     bool *stays;    /* of each piece: it reaches away from the ground, is the largest, or has the plant's colour; not
                        where it has the ground's and lies partly close to it */
     size_t *close;  /* of each piece: patches close to the ground */
+    bool *tail;     /* of each patch: the ground's by its colour, though its piece stays */
     bool *off_wall; /* of each piece: it leaves the wall, or stands over the soil */
     size_t *size;   /* of each piece, patches */
     double *green, *brown;       /* of each piece: patches of the plant's colour, and not of it */
@@ -53,6 +58,17 @@ static size_t patches_about(const plm_surfels *s, size_t patch, int reach, uint3
     return count;
 }
 
+static double over_soil(const plm_marker *m, const double p[3])
+{
+    return m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - m->scene->pot.soil;
+}
+
+/* How far over a pot's soil something is close to it. */
+static double soil_reach(const plm_marker *m)
+{
+    return fmax(1.5 * m->cell, 2 * m->soil_slack);
+}
+
 /* May a patch be a left-over of the ground: close to wall, rim, soil or table? */
 static bool close_to_ground(const plm_marker *m, const double p[3])
 {
@@ -64,8 +80,7 @@ static bool close_to_ground(const plm_marker *m, const double p[3])
         return plm_within_level(&s->level[s->soil], reach, p) &&
                plm_relief_over(&m->soil, p) < fmax(reach, 3 * m->soil_slack);
     const double radius = plm_wall_radius(m, p[2]), out = plm_pot_distance(&s->pot, p) - radius;
-    const double over = m->has_soil ? plm_relief_over(&m->soil, p) : p[2] - s->pot.soil;
-    if (out < 0 && over < fmax(1.5 * m->cell, 2 * m->soil_slack)) return true;
+    if (out < 0 && over_soil(m, p) < soil_reach(m)) return true;
     return p[2] < m->rim_height + fmax(1.5 * m->cell, m->soil_slack) && out < fmax(reach, 0.15 * radius) &&
            out > -0.15 * radius - reach;
 }
@@ -178,16 +193,52 @@ static bool is_beside(const pieces *q, int32_t patch)
     return false;
 }
 
+/* Has a patch of a piece that stays not the plant's colour? */
+static bool is_brown(const pieces *q, size_t k)
+{
+    return q->piece[k] >= 0 && q->stays[q->piece[k]] && 2 * q->soillike[k] > q->patches->points[k];
+}
+
+/* Do patches stand above another as the stem does that it is the foot of? */
+static bool goes_on(const plm_stand *t, const uint32_t *high, size_t count, size_t low)
+{
+    const float *foot = t->place[low];
+    size_t above = 0;
+    for (size_t k = 0; k < count && above < STEM_PATCHES; k++) {
+        const float *p = t->place[high[k]];
+        above +=
+            p[2] > foot[2] && hypot((double)p[0] - foot[0], (double)p[1] - foot[1]) < STEM_CELLS * t->surfels->cell;
+    }
+    return above == STEM_PATCHES;
+}
+
+/* Marks what hangs together with the plant, but has the ground's colour and is close to it, and does not go on upwards as the foot of
+ * a brown stem does: the tail of much noise. list: room for all patches. */
+static void mark_tails(const plm_marker *m, pieces *q, uint32_t *list)
+{
+    const plm_stand *t = &m->scene->stand;
+    size_t high = 0;
+    for (size_t k = 0; k < q->patches->count; k++) {
+        if (!is_brown(q, k)) continue;
+        const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
+        q->tail[k] = close_to_ground(m, p);
+        if (!q->tail[k] && over_soil(m, p) > CLEAR * soil_reach(m)) list[high++] = (uint32_t)k;
+    }
+    for (size_t k = 0; k < q->patches->count; k++) q->tail[k] = q->tail[k] && !goes_on(t, list, high, k);
+}
+
 static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
 {
     count_points(m, plant_share, q);
     join_patches(q);
     judge_pieces(m, q);
+    if (plant_share && m->scene->has_pot) mark_tails(m, q, q->stack);
     for (size_t i = 0; i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const int32_t n = q->piece[m->patch[i]];
         const bool single = n == THIN || (n == GROUND && plant_share && is_grounds(m, i, plant_share));
-        if (n >= 0 ? !q->stays[n] : single && !is_beside(q, m->patch[i])) m->zone[i] = PLM_ZONE_NEAR;
+        const bool is_tail = q->tail[m->patch[i]] && plant_share[plm_shade(m->cloud->rgb[i])] < PLANT_SHARE;
+        if (n >= 0 ? !q->stays[n] || is_tail : single && !is_beside(q, m->patch[i])) m->zone[i] = PLM_ZONE_NEAR;
     }
 }
 
@@ -201,6 +252,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .stack = plm_alloc(count, sizeof *q.stack, error),
                 .stays = plm_alloc_zero(count, sizeof *q.stays, error),
                 .close = plm_alloc_zero(count, sizeof *q.close, error),
+                .tail = plm_alloc_zero(count, sizeof *q.tail, error),
                 .off_wall = plm_alloc_zero(count, sizeof *q.off_wall, error),
                 .size = plm_alloc_zero(count, sizeof *q.size, error),
                 .green = plm_alloc_zero(count, sizeof *q.green, error),
@@ -208,8 +260,8 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .about = plm_alloc_zero(count, sizeof *q.about, error),
                 .green_about = plm_alloc_zero(count, sizeof *q.green_about, error),
                 .patches = m->scene->stand.surfels};
-    const bool room = q.ground && q.plantlike && q.soillike && q.piece && q.stack && q.stays && q.close && q.off_wall &&
-                      q.size && q.green && q.brown && q.about && q.green_about;
+    const bool room = q.ground && q.plantlike && q.soillike && q.piece && q.stack && q.stays && q.close && q.tail &&
+                      q.off_wall && q.size && q.green && q.brown && q.about && q.green_about;
     if (room) take_pieces(m, plant_share, &q);
     plm_free(q.ground);
     plm_free(q.plantlike);
@@ -218,6 +270,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.stack);
     plm_free(q.stays);
     plm_free(q.close);
+    plm_free(q.tail);
     plm_free(q.off_wall);
     plm_free(q.size);
     plm_free(q.green);

@@ -18,8 +18,9 @@ static const double BELOW = 0.1, BELOW_LEAST = 0.01, POT_COVERAGE = 0.55;
 /* Radii of the pot within which patches are its own: a wide table about it is no reason for a larger plant. */
 static const double ABOUT = 1.1;
 /* Of its own patches, those above a pot at least; fewer where it is closed and seen all around, as what bears a small
- * rosette is (of 216 virtual plants without a pot, heads among them, none comes this far). */
-static const double ABOVE = 0.01, ABOVE_SURE = 0.003, SURE_COVERAGE = 0.9, SURE_LID = 0.5;
+ * rosette is (of 216 virtual plants without a pot, heads among them, none comes this far). Such a rosette may stand no higher than
+ * the rim: what is above the soil within so many radii counts there. */
+static const double ABOVE = 0.01, ABOVE_SURE = 0.003, SURE_COVERAGE = 0.9, SURE_LID = 0.5, WITHIN = 0.8;
 
 /* ---- Colour --------------------------------------------------------------------------------------------------- */
 
@@ -151,11 +152,13 @@ static double accept_pot(const plm_ground_scene *s)
     const double small = fmin(fmax((12 - top / cell) / 6, 0), 1);
     if (pot->coverage < POT_COVERAGE + 0.25 * small || pot->scatter > 0.06 * top + 0.5 * cell) return 0;
     if (pot->lid < 0.15 && (pot->coverage < 0.85 || pot->scatter > 0.05 * top + 0.3 * cell)) return 0;
+    const bool is_sure = pot->coverage > SURE_COVERAGE && pot->lid > SURE_LID;
     double above = 0, below = 0, own = 0, high = pot->rim;
     for (size_t k = 0; k < t->surfels->count; k++) {
         const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
         high = fmax(high, p[2]);
-        above += p[2] > fmax(pot->rim, pot->soil) + 3 * cell;
+        const bool is_within = is_sure && plm_pot_distance(pot, p) < WITHIN * plm_pot_radius(pot, p[2]);
+        above += p[2] > (is_within ? pot->soil : fmax(pot->rim, pot->soil)) + 3 * cell;
         own += p[2] > pot->rim || plm_pot_distance(pot, p) < ABOUT * plm_pot_radius(pot, p[2]);
         below += p[2] < pot->foot - 4 * cell && !near_level(s, t->place[k]);
     }
@@ -163,7 +166,6 @@ static double accept_pot(const plm_ground_scene *s)
     const double size[3] = {t->size[0] * t->cell, t->size[1] * t->cell, high - pot->foot};
     if (top < SLIM * plm_norm(size) && pot->rim - pot->foot > LONG * top && pot->lid < 0.15) return 0;
     const double rest = fmax(BELOW * (pot->coverage - POT_COVERAGE) / (1 - POT_COVERAGE), BELOW_LEAST);
-    const bool is_sure = pot->coverage > SURE_COVERAGE && pot->lid > SURE_LID;
     if (above < fmax(20, (is_sure ? ABOVE_SURE : ABOVE) * own) || below > rest * all) return 0;
     return fmin(1, pot->coverage * (0.6 + fmin(0.4, pot->lid)));
 }

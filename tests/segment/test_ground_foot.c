@@ -96,17 +96,27 @@ static void the_foot_of_a_rosette_holds_no_soil(void **unused)
 }
 
 /* The tail of much noise about a pot's rim hangs together and reaches above what is looked at beside the rim: a ring of 685 points was
- * the plant's (0.0067 of the ground, 0.0102 without colours), and its hull 70 % too large. */
+ * the plant's (0.0067 of the ground, 0.0102 without colours), and its hull 70 % too large. Of another it hangs together with the
+ * plant (0.0216, and 113 % too large): there colours alone tell. */
 static void the_tail_of_a_rims_noise_is_ground(void **unused)
 {
     (void)unused;
-    const plm_scan_options options = {
-        .scanner = PLM_SCANNER_RGBD, .seed = 57146, .noise = 5e-4, .views = 12, .has_pot = true};
-    for (int coloured = 0; coloured < 2; coloured++) {
-        const found_ground o = ground_in_grown("maize", true, &options, coloured);
-        print_message("maize 57146%s: %.5f of the ground left, %.5f of the plant kept\n",
-                      coloured ? "" : " without colours", o.left, o.kept);
-        assert_true(o.kept > 0.995 && o.left < (coloured ? 0.0005 : 0.005));
+    static const struct {
+        uint64_t seed;
+        bool coloured;
+        double outliers, left;
+    } scene[] = {{57146, false, 0, 0.005}, {57146, true, 0, 0.0005}, {57150, true, 0.005, 0.004}};
+    for (size_t k = 0; k < sizeof scene / sizeof *scene; k++) {
+        const plm_scan_options options = {.scanner = PLM_SCANNER_RGBD,
+                                          .seed = scene[k].seed,
+                                          .noise = 5e-4,
+                                          .views = 12,
+                                          .outliers = scene[k].outliers,
+                                          .has_pot = true};
+        const found_ground o = ground_in_grown("maize", true, &options, scene[k].coloured);
+        print_message("maize %d%s: %.5f of the ground left, %.5f of the plant kept\n", (int)scene[k].seed,
+                      scene[k].coloured ? "" : " without colours", o.left, o.kept);
+        assert_true(o.kept > 0.995 && o.left < scene[k].left);
     }
 }
 
