@@ -114,6 +114,7 @@ static void leaves_are_no_ground_and_a_stem_no_pot(void **unused)
         {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 405, .points = 45000}},
         {"lettuce", {.scanner = PLM_SCANNER_SPLAT, .seed = 305, .points = 60000, .noise = 5e-4, .outliers = 0.01}},
         {"lettuce", {.scanner = PLM_SCANNER_DOME, .seed = 603, .points = 200000}},
+        {"lettuce", {.scanner = PLM_SCANNER_RGBD, .seed = 79014, .noise = 5e-4, .views = 12}}, /* its stem was a pot */
         {"single_leaf", {.scanner = PLM_SCANNER_SPLAT, .seed = 71, .points = 20000, .noise = 5e-4, .outliers = 0.01}},
         {"cucumber",
          {.scanner = PLM_SCANNER_RGBD,
