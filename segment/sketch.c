@@ -117,7 +117,8 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
     }
     const bool any = tubes == PLM_TUBES_ANY && sketch.scale.tube_length > 0 && sketch.scale.stem_radius > 0;
     if (any && !sketch.scale.has_tubes) sketch.scale.is_doubtful = true;
-    if (tubes != PLM_TUBES_SURE && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
+    if (tubes >= PLM_TUBES_DOUBTFUL && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
+    if (tubes == PLM_TUBES_NONE) sketch.scale.has_tubes = sketch.scale.is_doubtful = false;
     if (status == PLM_OK) status = take_working(&sketch, error);
     if (status == PLM_OK) status = plm_sketch_join(&sketch, &sketch.graph, error);
     if (status == PLM_OK) status = take_arrays(&sketch, error);

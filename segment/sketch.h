@@ -39,8 +39,8 @@ typedef struct plm_sketch {
     uint32_t *leaf_flags;
 } plm_sketch;
 
-/** Which tubes count as tubes: sure ones, doubtful ones as well, or whatever looks like one (is_doubtful, then). */
-typedef enum plm_tubes { PLM_TUBES_SURE, PLM_TUBES_DOUBTFUL, PLM_TUBES_ANY } plm_tubes;
+/** Which tubes count as tubes: none, sure ones, doubtful ones as well, or whatever looks like one (is_doubtful, then). */
+typedef enum plm_tubes { PLM_TUBES_NONE, PLM_TUBES_SURE, PLM_TUBES_DOUBTFUL, PLM_TUBES_ANY } plm_tubes;
 
 /** Thins the plant, finds its scale and the graph, and tells tubes from blades. scale.is_doubtful: they are not sure. */
 plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_budget, plm_tubes tubes,

@@ -6,6 +6,7 @@
 #include "segment/head.h"
 #include "segment/sheets.h"
 #include "support/label_score.h"
+#include "support/segmented.h"
 #include "support/virtual_plant.h"
 
 #define CLEAN        .scanner = PLM_SCANNER_DOME
@@ -85,6 +86,25 @@ static void folds_of_a_single_leaf_part_none(void **unused)
         assert_true(
             score_of("single_leaf", &(plm_scan_options){DEPTH_CAMERA, .seed = seed, .points = 20000}, &habit).f1 == 1);
         assert_int_equal(habit, PLM_HABIT_SINGLE_LEAF);
+    }
+}
+
+/* What looks like tubes on a sheet in noise parts it into many leaves, but few of these have tubes of their own. (27 and 35 of tubes that
+ * are doubtful, 12 of sure ones.) */
+static void tubes_on_a_sheet_are_no_petioles(void **unused)
+{
+    (void)unused;
+    static const plm_scan_options scan[] = {
+        {.scanner = PLM_SCANNER_DOME, .seed = 8409, .points = 9000, .noise = 1e-4},
+        {.scanner = PLM_SCANNER_SPLAT, .seed = 8433, .points = 16000, .noise = 1e-4},
+        {.scanner = PLM_SCANNER_SPLAT, .seed = 8058, .points = 25000, .noise = 2e-4}};
+    for (size_t k = 0; k < COUNT(scan); k++) {
+        plm_habit habit;
+        const label_score score =
+            segmented_grown("single_leaf", &(plm_plant_options){.seed = scan[k].seed}, &scan[k], &habit);
+        print_message("single leaf %d: %s, F1 %.2f\n", (int)scan[k].seed, plm_habit_name(habit), score.f1);
+        assert_int_equal(habit, PLM_HABIT_SINGLE_LEAF);
+        assert_true(score.f1 == 1);
     }
 }
 
@@ -249,15 +269,11 @@ static void a_stem_is_found_under_a_cone(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        plant_case(a_head_falls_into_its_leaves),
-        plant_case(thin_places_part_no_leaf),
-        plant_case(a_sparse_head_has_no_tubes),
-        plant_case(a_blurred_head_is_no_rosette),
-        plant_case(folds_of_a_single_leaf_part_none),
-        plant_case(who_knows_better_is_asked),
-        cmocka_unit_test(clouds_without_sheets_do_no_harm),
-        cmocka_unit_test(sheets_part_at_necks_and_gaps),
-        cmocka_unit_test(a_stem_is_found_under_a_cone),
+        plant_case(a_head_falls_into_its_leaves),        plant_case(thin_places_part_no_leaf),
+        plant_case(a_sparse_head_has_no_tubes),          plant_case(a_blurred_head_is_no_rosette),
+        plant_case(folds_of_a_single_leaf_part_none),    plant_case(tubes_on_a_sheet_are_no_petioles),
+        plant_case(who_knows_better_is_asked),           cmocka_unit_test(clouds_without_sheets_do_no_harm),
+        cmocka_unit_test(sheets_part_at_necks_and_gaps), cmocka_unit_test(a_stem_is_found_under_a_cone),
     };
     return run_cases(tests);
 }
