@@ -18,10 +18,10 @@ static const double ON_WALL = 0.15;
 /* At a pot, patches close to the ground in a piece that has not the plant's colour, of its own, at least: it is the ground's though the
  * rest reaches away (the tail of 5.6 mm of noise about a rim: 0.9; of soil about rosettes: 0.27 and more). */
 static const double CLOSE = 0.25;
-/* So many patches above another, not farther off across than so many voxels, and so many times as high over the soil as what is close to
- * it, may be a stem that it is the foot of; ghosts below leaves are fewer. */
-static const double STEM_CELLS = 3, CLEAR = 2;
-enum { STEM_PATCHES = 6 };
+/* A brown patch that is close to the soil is the foot of a stem where so many brown ones stand over it and about, within so many cells of
+ * the raster, higher over the soil than so many times what is close to it; ghosts below leaves are fewer. */
+static const double STEM_HIGH = 2;
+enum { STEM_PATCHES = 3, STEM_CELLS = 2 };
 /* Free points in and about a patch, of the ground's there: less are none of the plant. */
 static const double THINNEST = 0.1;
 
@@ -181,58 +181,60 @@ static bool is_grounds(const plm_marker *m, size_t i, const float *plant_share)
     return plm_at_table(m, m->table_slack, p);
 }
 
-/* Is the patch by one of a piece that stays? */
+/* Is the patch by one of a piece that stays, and not by the ground's tail alone? */
 static bool is_beside(const pieces *q, int32_t patch)
 {
     uint32_t about[MOST_ABOUT];
     const size_t count = patches_about(q->patches, (size_t)patch, JOIN, about);
     for (size_t k = 0; k < count; k++) {
         const int32_t n = q->piece[about[k]];
-        if (n >= 0 && q->stays[n]) return true;
+        if (n >= 0 && q->stays[n] && !q->tail[about[k]]) return true;
     }
     return false;
 }
 
-/* Has a patch of a piece that stays not the plant's colour? */
-static bool is_brown(const pieces *q, size_t k)
+/* Is a patch of a piece that stays, though most of its points, the ground's among them, have not the plant's colour? */
+static bool is_brown_in_plant(const pieces *q, size_t k)
 {
     return q->piece[k] >= 0 && q->stays[q->piece[k]] && 2 * q->soillike[k] > q->patches->points[k];
 }
 
-/* Do patches stand above another as the stem does that it is the foot of? */
-static bool goes_on(const plm_stand *t, const uint32_t *high, size_t count, size_t low)
+/* Do brown patches stand over a place and about, as the stem does that it is the foot of? high: how many, of each cell of the raster. */
+static bool goes_on(const plm_stand *t, const uint32_t *high, const float place[3])
 {
-    const float *foot = t->place[low];
-    size_t above = 0;
-    for (size_t k = 0; k < count && above < STEM_PATCHES; k++) {
-        const float *p = t->place[high[k]];
-        above +=
-            p[2] > foot[2] && hypot((double)p[0] - foot[0], (double)p[1] - foot[1]) < STEM_CELLS * t->surfels->cell;
-    }
-    return above == STEM_PATCHES;
+    const int64_t cell = plm_stand_cell(t, place[0], place[1]), x = cell / t->size[1], y = cell % t->size[1];
+    size_t count = 0;
+    for (int64_t a = x - STEM_CELLS; cell >= 0 && a <= x + STEM_CELLS; a++)
+        for (int64_t b = y - STEM_CELLS; b <= y + STEM_CELLS; b++)
+            if (a >= 0 && a < t->size[0] && b >= 0 && b < t->size[1]) count += high[a * t->size[1] + b];
+    return count >= STEM_PATCHES;
 }
 
 /* Marks what hangs together with the plant, but has the ground's colour and is close to it, and does not go on upwards as the foot of
- * a brown stem does: the tail of much noise. list: room for all patches. */
-static void mark_tails(const plm_marker *m, pieces *q, uint32_t *list)
+ * a brown stem does: the tail of much noise. */
+static plm_status mark_tails(const plm_marker *m, pieces *q, plm_error *error)
 {
     const plm_stand *t = &m->scene->stand;
-    size_t high = 0;
+    uint32_t *high = plm_alloc_zero((size_t)t->size[0] * (size_t)t->size[1], sizeof *high, error);
+    if (!high) return PLM_E_MEMORY;
     for (size_t k = 0; k < q->patches->count; k++) {
-        if (!is_brown(q, k)) continue;
+        if (!is_brown_in_plant(q, k)) continue;
         const double p[3] = {t->place[k][0], t->place[k][1], t->place[k][2]};
+        const int64_t cell = plm_stand_cell(t, p[0], p[1]);
         q->tail[k] = close_to_ground(m, p);
-        if (!q->tail[k] && over_soil(m, p) > CLEAR * soil_reach(m)) list[high++] = (uint32_t)k;
+        if (!q->tail[k] && cell >= 0) high[cell] += over_soil(m, p) > STEM_HIGH * soil_reach(m);
     }
-    for (size_t k = 0; k < q->patches->count; k++) q->tail[k] = q->tail[k] && !goes_on(t, list, high, k);
+    for (size_t k = 0; k < q->patches->count; k++) q->tail[k] = q->tail[k] && !goes_on(t, high, t->place[k]);
+    plm_free(high);
+    return PLM_OK;
 }
 
-static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
+static plm_status take_pieces(plm_marker *m, const float *plant_share, pieces *q, plm_error *error)
 {
     count_points(m, plant_share, q);
     join_patches(q);
     judge_pieces(m, q);
-    if (plant_share && m->scene->has_pot) mark_tails(m, q, q->stack);
+    if (plant_share && m->scene->has_pot && mark_tails(m, q, error) != PLM_OK) return PLM_E_MEMORY;
     for (size_t i = 0; i < m->cloud->count; i++) {
         if (m->zone[i] != PLM_ZONE_FREE || m->patch[i] < 0) continue;
         const int32_t n = q->piece[m->patch[i]];
@@ -240,6 +242,7 @@ static void take_pieces(plm_marker *m, const float *plant_share, pieces *q)
         const bool is_tail = q->tail[m->patch[i]] && plant_share[plm_shade(m->cloud->rgb[i])] < PLANT_SHARE;
         if (n >= 0 ? !q->stays[n] || is_tail : single && !is_beside(q, m->patch[i])) m->zone[i] = PLM_ZONE_NEAR;
     }
+    return PLM_OK;
 }
 
 plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_error *error)
@@ -262,7 +265,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .patches = m->scene->stand.surfels};
     const bool room = q.ground && q.plantlike && q.soillike && q.piece && q.stack && q.stays && q.close && q.tail &&
                       q.off_wall && q.size && q.green && q.brown && q.about && q.green_about;
-    if (room) take_pieces(m, plant_share, &q);
+    const plm_status status = room ? take_pieces(m, plant_share, &q, error) : PLM_E_MEMORY;
     plm_free(q.ground);
     plm_free(q.plantlike);
     plm_free(q.soillike);
@@ -277,5 +280,5 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
     plm_free(q.brown);
     plm_free(q.about);
     plm_free(q.green_about);
-    return room ? PLM_OK : PLM_E_MEMORY;
+    return status;
 }

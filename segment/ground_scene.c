@@ -11,7 +11,7 @@
 
 /* Radius of a pot over the size of all that was looked at, and height over radius: where it is slimmer and longer, it may be a stem. (Of
  * heads 0.045 and 0.08; no pot of 44, virtual or real, is as long and without soil.) */
-static const double SLIM = 0.1, LONG = 2;
+static const double SLIM = 0.085, LONG = 2.3;
 /* Patches below a pot, over all: a floor's rest below one that is seen all around, next to none (strays) below a wall that is hardly
  * seen. A level leaf whose rim hangs down makes such a wall (coverage 0.58), with 0.036 below it, of its stem; 0.0007 at most below
  * 20 pots, seen from 0.95 of all directions and more. */

@@ -63,7 +63,7 @@ void plm_stand_free(plm_stand *stand)
     stand->lean = NULL;
 }
 
-static int64_t raster_cell(const plm_stand *t, double u, double v)
+int64_t plm_stand_cell(const plm_stand *t, double u, double v)
 {
     const double a = floor((u - t->low[0]) / t->cell), b = floor((v - t->low[1]) / t->cell);
     if (!(a >= 0 && a < t->size[0] && b >= 0 && b < t->size[1])) return -1;
@@ -209,7 +209,7 @@ static size_t keep_largest_piece(search *f, uint8_t *mask)
     const int32_t width = t->size[0], height = t->size[1];
     memset(f->piece, 0, (size_t)width * (size_t)height * sizeof *f->piece);
     for (size_t i = 0; i < f->members; i++)
-        f->piece[raster_cell(t, t->place[f->member[i]][0], t->place[f->member[i]][1])] = -1;
+        f->piece[plm_stand_cell(t, t->place[f->member[i]][0], t->place[f->member[i]][1])] = -1;
     size_t largest = 0;
     int32_t number = 0, best = 0;
     for (int32_t start = 0; start < width * height; start++) {
@@ -233,7 +233,7 @@ static size_t keep_largest_piece(search *f, uint8_t *mask)
     size_t kept = 0;
     for (size_t i = 0; i < f->members; i++) {
         const float *p = t->place[f->member[i]];
-        if (mask[raster_cell(t, p[0], p[1])]) f->member[kept++] = f->member[i];
+        if (mask[plm_stand_cell(t, p[0], p[1])]) f->member[kept++] = f->member[i];
     }
     f->members = kept;
     return largest;

@@ -36,6 +36,9 @@ typedef struct plm_level {
 plm_status plm_stand_make(const plm_surfels *surfels, const double up[3], plm_stand *stand, plm_error *error);
 void plm_stand_free(plm_stand *stand);
 
+/** The cell of the raster over a place, by rows of v; -1 outside of it. */
+int64_t plm_stand_cell(const plm_stand *stand, double u, double v);
+
 /** The place u, v, w of a point of the cloud. */
 static inline void plm_stand_place(const plm_stand *stand, const float xyz[3], double place[3])
 {

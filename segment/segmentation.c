@@ -116,7 +116,7 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(sketch, error);
     /* What tubes a blurred plant shows are petioles of a rosette, or none. */
-    const bool stemless = tubes != PLM_TUBES_SURE && sketch->scale.is_doubtful && sketch->scale.is_blurred;
+    const bool stemless = tubes >= PLM_TUBES_DOUBTFUL && sketch->scale.is_doubtful && sketch->scale.is_blurred;
     if (status == PLM_OK && may_have_stem(options->habit) && !stemless) status = plm_sketch_stem(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, error);
@@ -135,10 +135,10 @@ static bool may_be_head(plm_habit habit, const plm_sketch *sketch)
     return habit == PLM_HABIT_HEAD || (habit == PLM_HABIT_UNKNOWN && !sketch->scale.has_tubes && bladed);
 }
 
-/* Doubtful tubes were petioles where they part the blades into leaves of which none is half of the plant, and so many have one, at least.
- * (On 24 virtual rosettes the largest has 0.33 at most, and 0.7 of the leaves have petioles. Of single leaves noise parts a rim or a fold
- * and leaves 0.57 or more, or parts them into many, of which 0.52 at most have tubes.) Fewer, and even sure tubes were none: 0.08 to 0.25
- * of three single leaves as splats, 0.59 and more of 110 rosettes. */
+/* Doubtful tubes were petioles where they part the blades into leaves of which none is half of the plant, and a share PETIOLED have one,
+ * unless the user says rosette. (On 24 virtual rosettes the largest has 0.33 at most, and 0.7 of the leaves have petioles. Of single leaves
+ * noise parts a rim or a fold and leaves 0.57 or more, or parts them into many, of which 0.52 at most have tubes.) Of fewer than
+ * PETIOLED_SURE sure tubes were none, either: 0.08 to 0.25 of three single leaves as splats, 0.59 and more of 110 rosettes. */
 static const double PETIOLED = 0.55, PETIOLED_SURE = 0.4;
 enum { PETIOLE_LEAST = 3 /* points */ };
 
@@ -167,21 +167,17 @@ static plm_status look_at_leaves(const plm_sketch *sketch, rosette_leaves *leave
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-/* Which tubes to believe, by the leaves that were found with those that tubes says. Who says rosette saw petioles. */
-static plm_status judge_tubes(const plm_sketch *sketch, plm_tubes tubes, plm_tubes *better, plm_error *error)
+/* Whether the tubes were petioles, by the leaves that were found with them; is_told: who says rosette saw petioles. */
+static plm_status judge_tubes(const plm_sketch *sketch, bool is_told, bool *believed, plm_error *error)
 {
-    const bool is_rosette = sketch->habit == PLM_HABIT_ROSETTE, is_told = tubes == PLM_TUBES_ANY;
-    *better = tubes;
-    if (tubes == PLM_TUBES_SURE || (!sketch->scale.is_doubtful && (!is_rosette || is_told || sketch->leaf_count < 2)))
-        return PLM_OK;
+    const bool is_rosette = sketch->habit == PLM_HABIT_ROSETTE;
     rosette_leaves leaves = {0};
-    const plm_status status = look_at_leaves(sketch, &leaves, error);
-    if (status != PLM_OK) return status;
-    if (!sketch->scale.is_doubtful)
-        *better = leaves.petioled < PETIOLED_SURE ? PLM_TUBES_NONE : tubes;
-    else if (!is_rosette || leaves.largest > 0.5 || (!is_told && leaves.petioled < PETIOLED))
-        *better = PLM_TUBES_SURE;
-    return PLM_OK;
+    const plm_status status = is_rosette ? look_at_leaves(sketch, &leaves, error) : PLM_OK;
+    if (sketch->scale.is_doubtful)
+        *believed = is_rosette && leaves.largest <= 0.5 && (is_told || leaves.petioled >= PETIOLED);
+    else
+        *believed = !is_rosette || is_told || sketch->leaf_count < 2 || leaves.petioled >= PETIOLED_SURE;
+    return status;
 }
 
 /* The voxels whose means the points are, and how strongly these gather in them; 0 where they are none. */
@@ -264,10 +260,11 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     if (options->habit == PLM_HABIT_UNKNOWN) tubes = PLM_TUBES_DOUBTFUL;
     if (options->habit == PLM_HABIT_ROSETTE) tubes = PLM_TUBES_ANY; /* the user saw petioles */
     status = find_organs((const float(*)[3])xyz, count, options, tubes, &sketch, error);
-    plm_tubes better = tubes;
-    if (status == PLM_OK) status = judge_tubes(&sketch, tubes, &better, error);
-    if (status == PLM_OK && better != tubes)
-        status = find_organs((const float(*)[3])xyz, count, options, better, &sketch, error);
+    bool believed = true; /* who says anything but rosette knows */
+    if (status == PLM_OK && tubes != PLM_TUBES_SURE)
+        status = judge_tubes(&sketch, tubes == PLM_TUBES_ANY, &believed, error);
+    if (status == PLM_OK && !believed)
+        status = find_organs((const float(*)[3])xyz, count, options, PLM_TUBES_NONE, &sketch, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);
     if (status != PLM_OK) goto done;
     out.habit = sketch.habit;

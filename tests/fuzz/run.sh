@@ -6,8 +6,10 @@ build=${1:?build folder} seconds=${2:-10} seed=${3:-1}
 here=$(cd "$(dirname "$0")" && pwd)
 export ASAN_OPTIONS=${ASAN_OPTIONS:-allocator_may_return_null=1}
 export build seconds seed here
+targets=$(find "$build"/tests/fuzz -maxdepth 1 -name 'fuzz_*' -type f -perm -u+x | sort)
+[ -n "$targets" ] || { echo "no fuzz target in $build/tests/fuzz"; exit 1; }
 # shellcheck disable=SC2016 # the inner shell expands these
-find "$build"/tests/fuzz -maxdepth 1 -name 'fuzz_*' -type f -perm -u+x | sort | xargs -P "$(nproc)" -I TARGET sh -eu -c '
+echo "$targets" | xargs -P "$(nproc)" -I TARGET sh -eu -c '
     name=$(basename "$1")
     found=$build/found/$name
     mkdir -p "$found"
