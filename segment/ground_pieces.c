@@ -253,7 +253,7 @@ plm_status plm_ground_leftovers(plm_marker *m, const float *plant_share, plm_err
                 .soillike = plm_alloc_zero(count, sizeof *q.soillike, error),
                 .piece = plm_alloc(count, sizeof *q.piece, error),
                 .stack = plm_alloc(count, sizeof *q.stack, error),
-                .stays = plm_alloc_zero(count, sizeof *q.stays, error),
+                .stays = plm_alloc(count, sizeof *q.stays, error),
                 .close = plm_alloc_zero(count, sizeof *q.close, error),
                 .tail = plm_alloc_zero(count, sizeof *q.tail, error),
                 .off_wall = plm_alloc_zero(count, sizeof *q.off_wall, error),

@@ -230,13 +230,15 @@ static bool are_straps(const plm_sketch *sketch, const leaf_tally *tally, const 
 
 plm_status plm_habit_guess(const plm_sketch *sketch, const plm_side_groups *groups, plm_habit *habit, plm_error *error)
 {
+    if (is_bare(sketch, groups)) {
+        *habit = PLM_HABIT_BARE_STEM;
+        return PLM_OK;
+    }
     const leaf_tally tally = count_leaves(sketch, groups);
     leaf_shape shape = {0};
     const plm_status status = sketch->stem.count ? find_leaf_shape(sketch, groups, &shape, error) : PLM_OK;
     if (status != PLM_OK) return status;
-    if (is_bare(sketch, groups))
-        *habit = PLM_HABIT_BARE_STEM;
-    else if (sketch->stem.count && are_straps(sketch, &tally, &shape))
+    if (sketch->stem.count && are_straps(sketch, &tally, &shape))
         *habit = PLM_HABIT_STRAP;
     else if (!tally.leafy)
         *habit = sketch->scale.has_tubes ? PLM_HABIT_BARE_STEM : PLM_HABIT_SINGLE_LEAF;

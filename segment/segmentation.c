@@ -116,7 +116,7 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK) status = plm_sketch_tidy(sketch, error);
     /* What tubes a blurred plant shows are petioles of a rosette, or none. */
-    const bool stemless = tubes >= PLM_TUBES_DOUBTFUL && sketch->scale.is_doubtful && sketch->scale.is_blurred;
+    const bool stemless = tubes != PLM_TUBES_SURE && sketch->scale.is_doubtful && sketch->scale.is_blurred;
     if (status == PLM_OK && may_have_stem(options->habit) && !stemless) status = plm_sketch_stem(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, error);
@@ -153,18 +153,21 @@ static plm_status look_at_leaves(const plm_sketch *sketch, rosette_leaves *leave
     plm_scratch scratch = {.error = error};
     size_t *blade = plm_scratch_take(&scratch, sketch->leaf_count + 1, sizeof *blade);
     size_t *petiole = plm_scratch_take(&scratch, sketch->leaf_count + 1, sizeof *petiole);
-    size_t all = 0, largest = 0, petioled = 0;
-    for (size_t i = 0; i < sketch->working.count && !scratch.failed; i++)
-        if (sketch->leaf[i] >= 0) ++(sketch->is_tube[i] ? petiole : blade)[sketch->leaf[i]];
-    for (size_t k = 0; k < sketch->leaf_count && !scratch.failed; k++) {
-        all += blade[k];
-        if (blade[k] > largest) largest = blade[k];
-        petioled += petiole[k] >= PETIOLE_LEAST;
+    const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
+        size_t all = 0, largest = 0, petioled = 0;
+        for (size_t i = 0; i < sketch->working.count; i++)
+            if (sketch->leaf[i] >= 0) ++(sketch->is_tube[i] ? petiole : blade)[sketch->leaf[i]];
+        for (size_t k = 0; k < sketch->leaf_count; k++) {
+            all += blade[k];
+            if (blade[k] > largest) largest = blade[k];
+            petioled += petiole[k] >= PETIOLE_LEAST;
+        }
+        leaves->largest = all ? (double)largest / (double)all : 1;
+        leaves->petioled = sketch->leaf_count ? (double)petioled / (double)sketch->leaf_count : 0;
     }
-    leaves->largest = all ? (double)largest / (double)all : 1;
-    leaves->petioled = sketch->leaf_count ? (double)petioled / (double)sketch->leaf_count : 0;
     plm_scratch_free(&scratch, NULL);
-    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
+    return status;
 }
 
 /* Whether the tubes were petioles, by the leaves that were found with them; is_told: who says rosette saw petioles. */
