@@ -1,8 +1,10 @@
 /* segment/fruit.c: a leaf is a sheet. What was taken for one and is made of balls is fruit, which with its own stalk is of no organ; balls that
- * a leaf was joined with are taken off it. Grasses bear no balls, and a furled leaf of theirs may be like one. */
+ * a leaf was joined with are taken off it. Leaves that touch fruit are found again without it: the way to them led over it. Grasses bear no
+ * balls, and a furled leaf of theirs may be like one. */
+#include "segment/fruit.h"
+
 #include "segment/balls.h"
 #include "segment/scratch.h"
-#include "segment/sketch.h"
 
 #include "cloud/linear.h"
 
@@ -11,15 +13,9 @@
 /* Radii of fruits: in R, and in SDs of the noise and cells at least; of the plant's size at most: a head is none. */
 static const double LEAST = 0.5, LEAST_NOISE = 15, MOST = 2, MOST_SIZE = 0.1;
 static const double CELLS = 3; /* of the thinned plant, in the least radius */
-/* A leaf is fruit that has fewer other points than so much of the fruit's, and of the usual leaf's. */
-static const double REST = 0.5, REST_OF_LEAF = 0.35;
+/* A leaf is what is left of a truss where it has fewer points than the fruit that it touches, and than so much of the usual leaf's. */
+static const double REST_OF_LEAF = 0.35;
 static const double HOLDS = 0.25; /* of a ball's points: a leaf that has fewer only touches it */
-
-/* Points of a leaf: on balls, and of its blade beside them. */
-typedef struct share {
-    size_t fruit, rest;
-    int32_t number; /* of the leaf without those that are fruit; -1: it is */
-} share;
 
 /* Among the plant's points, thinned: a ball needs no more of them than its radius asks for. */
 static plm_status find_balls(const plm_sketch *sketch, plm_ball **ball, size_t *balls, plm_error *error)
@@ -56,95 +52,191 @@ static int32_t ball_of(const float xyz[3], const plm_ball *ball, size_t balls)
     return -1;
 }
 
-/* What a ball and a leaf have in common, and all that is on the ball. */
-typedef struct work {
-    plm_sketch *sketch;
-    size_t balls;
-    int32_t *on;  /* of each point: its ball, -1 */
-    size_t *held; /* of each leaf, each ball's points */
-    size_t *all;  /* of each ball */
-    share *leaf;
-    float *size; /* room for one a leaf */
-} work;
-
 static bool may_be_fruit(const plm_sketch *sketch, size_t i)
 {
     return !sketch->is_stem[i] && sketch->leaf[i] >= 0;
 }
 
-/* A leaf that lies against a fruit holds few of its points: these stay. */
-static void drop_touched(work *w)
+/* A leaf that lies against a fruit holds few of its points: these stay. on: of each point, its ball. */
+static plm_status drop_touched(const plm_sketch *s, size_t balls, int32_t *on, plm_error *error)
 {
-    const plm_sketch *s = w->sketch;
-    for (size_t i = 0; i < s->working.count; i++) {
-        if (w->on[i] < 0) continue;
-        w->held[(size_t)s->leaf[i] * w->balls + (size_t)w->on[i]]++;
-        w->all[w->on[i]]++;
-    }
-    for (size_t i = 0; i < s->working.count; i++) {
-        if (w->on[i] < 0) continue;
-        const size_t held = w->held[(size_t)s->leaf[i] * w->balls + (size_t)w->on[i]];
-        if ((double)held < HOLDS * (double)w->all[w->on[i]]) w->on[i] = -1;
-    }
-}
-
-/* Leaves that are fruit lose their numbers. */
-static void judge(work *w)
-{
-    plm_sketch *s = w->sketch;
-    size_t whole = 0;
-    int32_t kept = 0;
-    for (size_t i = 0; i < s->working.count; i++) {
-        if (!may_be_fruit(s, i)) continue;
-        w->leaf[s->leaf[i]].fruit += w->on[i] >= 0;
-        w->leaf[s->leaf[i]].rest += w->on[i] < 0 && !s->is_tube[i];
-    }
-    for (size_t k = 0; k < s->leaf_count; k++)
-        if (!w->leaf[k].fruit) w->size[whole++] = (float)w->leaf[k].rest;
-    const double usual = whole ? plm_quantile(w->size, whole, 0.5) : INFINITY;
-    for (size_t k = 0; k < s->leaf_count; k++) {
-        const double rest = (double)w->leaf[k].rest;
-        const bool is_fruit = rest < REST * (double)w->leaf[k].fruit && rest < REST_OF_LEAF * usual;
-        w->leaf[k].number = is_fruit ? -1 : kept++;
-    }
-    s->leaf_count = (size_t)kept;
-}
-
-static plm_status take_off(plm_sketch *sketch, const plm_ball *ball, size_t balls, plm_error *error)
-{
-    const size_t count = sketch->working.count, leaves = sketch->leaf_count;
     plm_scratch scratch = {.error = error};
-    work w = {.sketch = sketch, .balls = balls};
-    w.on = plm_scratch_take(&scratch, count, sizeof *w.on);
-    w.held = plm_scratch_take(&scratch, leaves * balls, sizeof *w.held);
-    w.all = plm_scratch_take(&scratch, balls, sizeof *w.all);
-    w.leaf = plm_scratch_take(&scratch, leaves, sizeof *w.leaf);
-    w.size = plm_scratch_take(&scratch, leaves, sizeof *w.size);
-    for (size_t i = 0; !scratch.failed && i < count; i++)
-        w.on[i] = may_be_fruit(sketch, i) ? ball_of(sketch->working.xyz[i], ball, balls) : -1;
-    if (!scratch.failed) {
-        drop_touched(&w);
-        judge(&w);
+    size_t *held =
+        plm_scratch_take(&scratch, s->leaf_count * balls, sizeof *held); /* of each leaf, each ball's points */
+    size_t *all = plm_scratch_take(&scratch, balls, sizeof *all);
+    for (size_t i = 0; !scratch.failed && i < s->working.count; i++) {
+        if (on[i] < 0) continue;
+        held[(size_t)s->leaf[i] * balls + (size_t)on[i]]++;
+        all[on[i]]++;
     }
-    for (size_t i = 0; !scratch.failed && i < count; i++) {
-        if (!may_be_fruit(sketch, i)) continue;
-        sketch->leaf[i] = w.on[i] >= 0 ? -1 : w.leaf[sketch->leaf[i]].number;
-        if (sketch->leaf[i] >= 0) continue;
-        sketch->is_tube[i] = false;
-        sketch->leaflet[i] = -1;
+    for (size_t i = 0; !scratch.failed && i < s->working.count; i++) {
+        if (on[i] < 0) continue;
+        if ((double)held[(size_t)s->leaf[i] * balls + (size_t)on[i]] < HOLDS * (double)all[on[i]]) on[i] = -1;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-plm_status plm_sketch_fruit(plm_sketch *sketch, plm_error *error)
+/* Fruits that touch are a bunch: its points, and which other points touch it. room: as many as points. */
+static plm_status find_bunches(const plm_sketch *sketch, int32_t *colour, uint32_t *room, plm_fruit *fruit,
+                               plm_error *error)
+{
+    const plm_graph *graph = &sketch->graph;
+    fruit->bunches = plm_graph_components(graph, colour, fruit->bunch, room);
+    fruit->size = plm_alloc_zero(fruit->bunches, sizeof *fruit->size, error);
+    size_t touches = 0;
+    for (int pass = 0; pass < 2 && fruit->size; pass++) {
+        for (uint32_t i = 0; i < graph->count; i++) {
+            if (fruit->bunch[i] < 0) continue;
+            fruit->size[fruit->bunch[i]] += pass == 0;
+            for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++) {
+                if (fruit->bunch[graph->edge[e]] >= 0) continue;
+                if (pass) fruit->touch[fruit->touches++] = (plm_link){.a = i, .b = graph->edge[e]};
+                touches++;
+            }
+        }
+        if (!pass) fruit->touch = plm_alloc(touches, sizeof *fruit->touch, error);
+        if (!fruit->touch) return PLM_E_MEMORY;
+    }
+    return fruit->size ? PLM_OK : PLM_E_MEMORY;
+}
+
+static plm_status mark_fruit(const plm_sketch *sketch, const plm_ball *ball, size_t balls, plm_fruit *fruit,
+                             plm_error *error)
+{
+    const size_t count = sketch->working.count;
+    plm_scratch scratch = {.error = error};
+    int32_t *colour = plm_scratch_take(&scratch, count, sizeof *colour);
+    uint32_t *room = plm_scratch_take(&scratch, count, sizeof *room);
+    fruit->bunch = plm_alloc(count, sizeof *fruit->bunch, error);
+    plm_status status = scratch.failed || !fruit->bunch ? PLM_E_MEMORY : PLM_OK;
+    if (status == PLM_OK) {
+        for (size_t i = 0; i < count; i++)
+            colour[i] = may_be_fruit(sketch, i) ? ball_of(sketch->working.xyz[i], ball, balls) : -1;
+        status = drop_touched(sketch, balls, colour, error);
+    }
+    if (status == PLM_OK) {
+        for (size_t i = 0; i < count; i++) colour[i] = colour[i] < 0 ? -1 : 0;
+        status = find_bunches(sketch, colour, room, fruit, error);
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
+
+plm_status plm_fruit_find(const plm_sketch *sketch, plm_fruit *fruit, plm_error *error)
 {
     const bool may_bear = sketch->habit == PLM_HABIT_SIMPLE || sketch->habit == PLM_HABIT_COMPOUND;
+    *fruit = (plm_fruit){0};
     if (!may_bear || !sketch->stem.count || !sketch->leaf_count) return PLM_OK;
     plm_ball *ball = NULL;
     size_t balls = 0;
     plm_status status = find_balls(sketch, &ball, &balls, error);
-    if (status == PLM_OK && balls) status = take_off(sketch, ball, balls, error);
+    if (status == PLM_OK && balls) status = mark_fruit(sketch, ball, balls, fruit, error);
     plm_free(ball);
+    return status;
+}
+
+plm_status plm_fruit_part(plm_sketch *sketch, const plm_fruit *fruit, plm_error *error)
+{
+    int32_t *colour = plm_alloc(sketch->working.count, sizeof *colour, error);
+    if (!colour) return PLM_E_MEMORY;
+    for (size_t i = 0; i < sketch->working.count; i++) colour[i] = fruit->bunch[i] >= 0;
+    plm_graph_part(&sketch->graph, colour);
+    plm_free(colour);
+    return PLM_OK;
+}
+
+/* ---- Leaves ----------------------------------------------------------------------------------------------------- */
+
+/* Points of a leaf: of fruit that it is or touches, and of its own blade. */
+typedef struct share {
+    size_t fruit, rest;
+    int32_t number; /* of the leaf without those that are fruit; -1: it is */
+} share;
+
+static plm_status count_shares(const plm_sketch *sketch, const plm_fruit *fruit, share *leaf, plm_error *error)
+{
+    const size_t bunches = fruit->bunches;
+    bool *hangs = plm_alloc_zero(sketch->leaf_count * bunches, sizeof *hangs, error); /* each leaf: on each bunch */
+    if (!hangs) return PLM_E_MEMORY;
+    for (size_t i = 0; i < sketch->working.count; i++) {
+        if (!may_be_fruit(sketch, i)) continue;
+        const size_t k = (size_t)sketch->leaf[i];
+        if (fruit->bunch[i] >= 0)
+            hangs[k * bunches + (size_t)fruit->bunch[i]] = true;
+        else
+            leaf[k].rest += !sketch->is_tube[i];
+    }
+    for (size_t t = 0; t < fruit->touches; t++) {
+        const plm_link *touch = &fruit->touch[t];
+        if (!may_be_fruit(sketch, touch->b)) continue;
+        hangs[(size_t)sketch->leaf[touch->b] * bunches + (size_t)fruit->bunch[touch->a]] = true;
+    }
+    for (size_t k = 0; k < sketch->leaf_count; k++)
+        for (size_t b = 0; b < bunches; b++)
+            if (hangs[k * bunches + b]) leaf[k].fruit += fruit->size[b];
+    plm_free(hangs);
+    return PLM_OK;
+}
+
+/* Leaves that are fruit lose their numbers. value: room for one a leaf. */
+static void judge(plm_sketch *sketch, share *leaf, float *value)
+{
+    size_t whole = 0;
+    int32_t kept = 0;
+    for (size_t k = 0; k < sketch->leaf_count; k++)
+        if (!leaf[k].fruit) value[whole++] = (float)leaf[k].rest;
+    const double usual = whole ? plm_quantile(value, whole, 0.5) : INFINITY;
+    for (size_t k = 0; k < sketch->leaf_count; k++) {
+        const bool is_fruit = leaf[k].rest < leaf[k].fruit && (double)leaf[k].rest < REST_OF_LEAF * usual;
+        leaf[k].number = is_fruit ? -1 : kept++;
+    }
+    sketch->leaf_count = (size_t)kept;
+}
+
+plm_status plm_fruit_take_off(plm_sketch *sketch, const plm_fruit *fruit, plm_error *error)
+{
+    if (!fruit->bunches) return PLM_OK;
+    plm_scratch scratch = {.error = error};
+    share *leaf = plm_scratch_take(&scratch, sketch->leaf_count, sizeof *leaf);
+    float *value = plm_scratch_take(&scratch, sketch->leaf_count, sizeof *value);
+    plm_status status = scratch.failed ? PLM_E_MEMORY : count_shares(sketch, fruit, leaf, error);
+    if (status == PLM_OK) judge(sketch, leaf, value);
+    for (size_t i = 0; status == PLM_OK && i < sketch->working.count; i++) {
+        const bool is_fruit = fruit->bunch[i] >= 0;
+        if (sketch->is_stem[i] || (!is_fruit && sketch->leaf[i] < 0)) continue;
+        sketch->leaf[i] = is_fruit ? -1 : leaf[sketch->leaf[i]].number;
+        if (sketch->leaf[i] >= 0) continue;
+        sketch->is_tube[i] = false;
+        sketch->leaflet[i] = -1;
+    }
+    plm_scratch_free(&scratch, NULL);
+    return status;
+}
+
+void plm_fruit_free(plm_fruit *fruit)
+{
+    plm_free(fruit->bunch);
+    plm_free(fruit->size);
+    plm_free(fruit->touch);
+    *fruit = (plm_fruit){0};
+}
+
+/* ---- Both ------------------------------------------------------------------------------------------------------- */
+
+plm_status plm_sketch_leaves_and_fruit(plm_sketch *sketch, plm_error *error)
+{
+    plm_fruit fruit = {0};
+    plm_status status = plm_sketch_leaves(sketch, error);
+    if (status == PLM_OK) status = plm_fruit_find(sketch, &fruit, error);
+    if (status == PLM_OK && fruit.bunches) {
+        const plm_habit asked = sketch->asked;
+        sketch->asked = sketch->habit; /* which fruit does not change */
+        status = plm_fruit_part(sketch, &fruit, error);
+        if (status == PLM_OK) status = plm_sketch_leaves(sketch, error);
+        if (status == PLM_OK) status = plm_fruit_take_off(sketch, &fruit, error);
+        sketch->asked = asked;
+    }
+    plm_fruit_free(&fruit);
     return status;
 }
