@@ -204,9 +204,10 @@ static void leave_sessile_end(plm_sketch *sketch, const stem_top *top)
 plm_status plm_sketch_stem_end(plm_sketch *sketch, plm_error *error)
 {
     if (!sketch->stem.count) return PLM_OK;
-    bool again = true, turned = false, forked;
+    bool again = true, turned = false, forked, strayed = false;
     plm_status status = plm_stem_leave_thin(sketch, INTERNODE_LEAST * sketch->scale.radius, &forked, error);
-    if (status == PLM_OK && forked) plm_sketch_mark_stem(sketch);
+    if (status == PLM_OK) status = plm_stem_leave_turn(sketch, &strayed, error);
+    if (status == PLM_OK && (forked || strayed)) plm_sketch_mark_stem(sketch);
     for (int round = 0; round <= ROUNDS && again && status == PLM_OK; round++) {
         stem_top top;
         status = find_top(sketch, &top, error);
