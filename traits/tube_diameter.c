@@ -5,6 +5,7 @@
 
 #include "cloud/linear.h"
 #include "traits/tube_fit.h"
+#include "traits/tube_moment.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,6 +41,10 @@ static const double unresolved = 4; /* diameter over spread below which the ring
                                                short arc of a thick one look alike then */
 static const double unresolved_error =
     0.15; /* share of the diameter that is left open then: measured on virtual petioles */
+
+/* Scatter about the tube over its radius from where on the ring of voxel means is blurred, and from where there is none. (Fitted tubes of
+ * 36 stems from depth cameras are 4 % too slim in the mean below 0.38, 8 to 45 % beyond.) */
+static const double blurred = 0.38, no_ring = 0.46;
 
 static double square(double x)
 {
@@ -127,17 +132,15 @@ static plm_status fit_window(const plm_axis *axis, double t, double reach, const
     return plm_tube_fit((const double(*)[3])points->xyz, points->count, &start, PLM_TUBE_TAPERED, tube, error);
 }
 
-plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, double t, double reach, plm_estimate *out,
-                             plm_error *error)
+/* By a fitted tube; points: those of the window, within reach of t. blur: out, the scatter about it over its radius. */
+static plm_status by_fit(const plm_scene *scene, const plm_organ *organ, double t, double reach,
+                         const plm_tube_points *points, plm_estimate *out, double *blur, plm_error *error)
 {
-    plm_tube_points points;
-    plm_status status = window(organ, t, reach, &points, error);
-    if (status != PLM_OK) return status;
-    const size_t count = points.count;
+    const size_t count = points->count;
     plm_tube tube;
     plm_error why = {0};
-    status = count < FEWEST_POINTS ? PLM_E_DEGENERATE : fit_window(organ->axis, t, reach, &points, &tube, &why);
-    plm_free(points.xyz);
+    const plm_status status =
+        count < FEWEST_POINTS ? PLM_E_DEGENERATE : fit_window(organ->axis, t, reach, points, &tube, &why);
     if (status == PLM_E_MEMORY) return plm_fail(error, status, "%s", why.message);
     if (status != PLM_OK)
         return plm_trait_failed(out,
@@ -174,7 +177,43 @@ plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, dou
         out->flags |= PLM_FLAG_OCCLUDED;
         out->std_error = hypot(out->std_error, 0.1 * out->value * (1 - tube.coverage));
     }
+    *blur = tube.spread / (0.5 * out->value);
     out->point_count = tube.inlier_count;
     out->method = "tube fit";
     return PLM_OK;
+}
+
+/* In noise that blurs a stem's ring the mean square of distances from its axis tells, the more so, or alone where no tube fits. */
+static void blend(const plm_scene *scene, const plm_organ *organ, double t, const plm_tube_points *points, double blur,
+                  plm_estimate *out)
+{
+    double along[3], diameter, std_error;
+    plm_curve_tangent(&organ->axis->line, t, along);
+    if (!plm_tube_moment((const double(*)[3])points->xyz, points->count, along, &scene->sampling, &diameter,
+                         &std_error))
+        return;
+    const bool has_fit = out->state == PLM_STATE_OK;
+    if (!has_fit) blur = 2 * scene->sampling.noise / diameter;
+    if (blur < blurred) return;
+    const double share = has_fit ? fmin((blur - blurred) / (no_ring - blurred), 1) : 1;
+    const unsigned flags = out->flags | PLM_FLAG_LOW_DENSITY;
+    if (!has_fit) *out = (plm_estimate){.point_count = points->count};
+    out->value = share * diameter + (1 - share) * out->value;
+    out->std_error = share * std_error + (1 - share) * out->std_error;
+    out->flags = flags;
+    if (share > 0.5) out->method = "mean square distance from the axis";
+}
+
+plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, double t, double reach, plm_estimate *out,
+                             plm_error *error)
+{
+    plm_tube_points points;
+    double blur = 0;
+    plm_status status = window(organ, t, reach, &points, error);
+    if (status != PLM_OK) return status;
+    status = by_fit(scene, organ, t, reach, &points, out, &blur, error);
+    if (status == PLM_OK && organ->label == PLM_LABEL_STEM && scene->sampling.fused)
+        blend(scene, organ, t, &points, blur, out);
+    plm_free(points.xyz);
+    return status;
 }
