@@ -10,9 +10,10 @@
 static const double KINK = 0.21;        /* radians: a turn that tells a petiole from its stem */
 static const double KINK_AT_END = 0.25; /* the same where the way ends before it has straightened again */
 static const double HAIRPIN = 1;        /* radians: a turn from up to down that no stem makes */
-/* A turn (radians) that no stem makes within the last part of a way: there it has run into the topmost leaf, which what hangs beyond may hide.
- * (Of 43 large virtual tomatoes eight such ways turn by 0.93 to 1.53, those up the stem by 0.48 at most. Lower down real stems turn so.) */
-static const double WRONG = 0.8, LAST_PART = 0.85;
+/* A turn (radians) that no stem makes within the last part of a way, so far (in R) before its end: there it has run into the topmost leaf,
+ * which what hangs beyond may hide. (Of 43 large virtual tomatoes seven such ways turn by 0.80 to 1.82, 5.6 R and more before the end, those
+ * up the stem by 0.48 at most. Nearer to the end ways turn from a rachis into a leaflet, and lower down real stems turn so.) */
+static const double WRONG = 0.8, LAST_PART = 0.85, LEAF_LONG = 5;
 static const double PLATEAU = 0.95;          /* of the largest turn: as large */
 static const double AROUND = 1.3;            /* points within so many radii (plus noise) of a straight line are on it */
 static const double PRESENT = 0.3;           /* of the points that the stem has on such a length: it goes on */
@@ -266,11 +267,12 @@ plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm
 plm_status plm_stem_leave_turn(plm_sketch *sketch, bool *done, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
-    const double from = LAST_PART * stem->along[stem->count - 1];
+    const double length = stem->along[stem->count - 1], from = LAST_PART * length;
+    const double to = length - LEAF_LONG * sketch->scale.radius;
     *done = false;
     for (size_t n = ARM; n + ARM < stem->count; n++) {
         const double turn = plm_stem_turn(stem, n);
-        if (stem->along[n] < from || turn < WRONG) continue;
+        if (stem->along[n] < from || stem->along[n] > to || turn < WRONG) continue;
         if (turn >= plm_stem_turn(stem, n - 1) && turn >= plm_stem_turn(stem, n + 1))
             return plm_stem_straighten(sketch, n, 0, done, error);
     }

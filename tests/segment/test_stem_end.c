@@ -207,8 +207,8 @@ static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
     assert_false(done);
 }
 
-/* A way that turns aside by so much, so far up a stem of 70 mm, for 10 mm; gives how far beside the stem it ends. */
-static double leave_turn(double up_to, double angle, bool *done)
+/* A way that turns aside by so much, so far up a stem of 160 mm, for so long; gives how far beside the stem it ends. */
+static double leave_turn(double up_to, double angle, double aside, bool *done)
 {
     static const double base[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     const double node[3] = {0, 0, up_to}, out[3] = {sin(angle), 0, cos(angle)};
@@ -216,25 +216,27 @@ static double leave_turn(double up_to, double angle, bool *done)
     fork *f = make_fork(0, 1.1e-3);
     plm_stem_path *stem = &f->sketch.stem;
     f->sketch.working.count = stem->count = 0;
-    add_tube(f, base, up, 0.07, 2e-3);
-    add_tube(f, node, out, 0.01, 2e-3);
+    add_tube(f, base, up, 0.16, 2e-3);
+    add_tube(f, node, out, aside, 2e-3);
     add_nodes(stem, base, up, up_to, 2e-3);
-    add_nodes(stem, node, out, 0.01, 2e-3);
+    add_nodes(stem, node, out, aside, 2e-3);
     assert_ok(plm_stem_leave_turn(&f->sketch, done, &error));
     const double top = stem->node[stem->count - 1][2];
-    if (*done) assert_true(fabs(top - 0.07) < 2e-3);
+    if (*done) assert_true(fabs(top - 0.16) < 2e-3);
     return end_beside(f);
 }
 
-static void a_way_that_turns_sharply_at_its_end_goes_straight_on(void **unused)
+static void a_way_that_turns_sharply_into_the_topmost_leaf_goes_straight_on(void **unused)
 {
     (void)unused;
     bool done;
-    assert_true(fabs(leave_turn(0.064, 1.2, &done)) < 1e-3);
+    assert_true(fabs(leave_turn(0.15, 1.2, 0.022, &done)) < 1e-3);
     assert_true(done);
-    assert_true(leave_turn(0.064, 0.5, &done) > 3e-3); /* as a stem may */
+    assert_true(leave_turn(0.15, 0.5, 0.022, &done) > 8e-3); /* as a stem may */
     assert_false(done);
-    assert_true(leave_turn(0.04, 1.2, &done) > 3e-3); /* other rules tell what is lower */
+    assert_true(leave_turn(0.1, 1.2, 0.022, &done) > 8e-3); /* other rules tell what is lower */
+    assert_false(done);
+    assert_true(leave_turn(0.15, 1.2, 0.015, &done) > 8e-3); /* a leaflet of a leaf that the way has run into before */
     assert_false(done);
 }
 
@@ -397,7 +399,7 @@ int main(void)
         plant_case(a_stem_goes_on_below_a_gap),
         cmocka_unit_test(only_a_sharp_turn_down_in_the_upper_half_is_a_hairpin),
         cmocka_unit_test(the_way_leaves_the_thinner_branch_of_a_fork),
-        cmocka_unit_test(a_way_that_turns_sharply_at_its_end_goes_straight_on),
+        cmocka_unit_test(a_way_that_turns_sharply_into_the_topmost_leaf_goes_straight_on),
         cmocka_unit_test(leaflets_are_told_by_short_tubes_or_by_their_place),
         cmocka_unit_test(a_turn_into_a_leaflet_is_not_where_the_way_leaves_the_stem),
         cmocka_unit_test(a_turn_that_is_undone_is_told),
