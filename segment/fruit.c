@@ -1,6 +1,7 @@
 /* segment/fruit.c: a leaf is a sheet. What was taken for one and is made of balls is fruit, which with its own stalk is of no organ; balls that
- * a leaf was joined with are taken off it. Leaves that touch fruit are found again without it: the way to them led over it. Grasses bear no
- * balls, and a furled leaf of theirs may be like one. */
+ * a leaf was joined with are taken off it. The leaves are found again without them (and from what is known by then of tubes and blades, which
+ * is half of what that gains), as the way to one that touches fruit led over it. Grasses bear no balls, and a furled leaf of theirs may be
+ * like one. */
 #include "segment/fruit.h"
 
 #include "segment/balls.h"
@@ -13,7 +14,7 @@
 /* Radii of fruits: in R, and in SDs of the noise and cells at least; of the plant's size at most: a head is none. */
 static const double LEAST = 0.5, LEAST_NOISE = 15, MOST = 2, MOST_SIZE = 0.1;
 static const double CELLS = 3; /* of the thinned plant, in the least radius */
-/* A leaf is what is left of a truss where it has fewer points than the fruit that it touches, and than so much of the usual leaf's. */
+/* A leaf is what is left of a truss where its blade has fewer points than the bunches that it touches, and than so much of the usual leaf's. */
 static const double REST_OF_LEAF = 0.35;
 static const double HOLDS = 0.25; /* of a ball's points: a leaf that has fewer only touches it */
 
@@ -91,8 +92,10 @@ static plm_status find_bunches(const plm_sketch *sketch, int32_t *colour, uint32
             fruit->size[fruit->bunch[i]] += pass == 0;
             for (uint32_t e = graph->first[i]; e < graph->first[i + 1]; e++) {
                 if (fruit->bunch[graph->edge[e]] >= 0) continue;
-                if (pass) fruit->touch[fruit->touches++] = (plm_link){.a = i, .b = graph->edge[e]};
-                touches++;
+                if (pass)
+                    fruit->touch[fruit->touches++] = (plm_link){.a = i, .b = graph->edge[e]};
+                else
+                    touches++;
             }
         }
         if (!pass) fruit->touch = plm_alloc(touches, sizeof *fruit->touch, error);
@@ -179,19 +182,39 @@ static plm_status count_shares(const plm_sketch *sketch, const plm_fruit *fruit,
     return PLM_OK;
 }
 
-/* Leaves that are fruit lose their numbers. value: room for one a leaf. */
+/* Leaves that are fruit lose their numbers; where all touch fruit, all tell how large one is. value: room for one a leaf. */
 static void judge(plm_sketch *sketch, share *leaf, float *value)
 {
     size_t whole = 0;
     int32_t kept = 0;
-    for (size_t k = 0; k < sketch->leaf_count; k++)
-        if (!leaf[k].fruit) value[whole++] = (float)leaf[k].rest;
-    const double usual = whole ? plm_quantile(value, whole, 0.5) : INFINITY;
+    for (int any = 0; any < 2 && !whole; any++)
+        for (size_t k = 0; k < sketch->leaf_count; k++)
+            if (any || !leaf[k].fruit) value[whole++] = (float)leaf[k].rest;
+    const double usual = plm_quantile(value, whole, 0.5);
     for (size_t k = 0; k < sketch->leaf_count; k++) {
         const bool is_fruit = leaf[k].rest < leaf[k].fruit && (double)leaf[k].rest < REST_OF_LEAF * usual;
         leaf[k].number = is_fruit ? -1 : kept++;
     }
     sketch->leaf_count = (size_t)kept;
+}
+
+/* Groups of no leaf that touch fruit are its stalks: no tube of the stem's. */
+static plm_status drop_stalks(plm_sketch *sketch, const plm_fruit *fruit, plm_error *error)
+{
+    int32_t most = -1;
+    for (size_t i = 0; i < sketch->working.count; i++)
+        if (sketch->group[i] > most) most = sketch->group[i];
+    bool *is_stalk = plm_alloc_zero((size_t)(most + 1), sizeof *is_stalk, error);
+    if (!is_stalk) return PLM_E_MEMORY;
+    for (size_t t = 0; t < fruit->touches; t++) {
+        const uint32_t i = fruit->touch[t].b;
+        if (!sketch->is_stem[i] && sketch->leaf[i] < 0 && sketch->group[i] >= 0) is_stalk[sketch->group[i]] = true;
+    }
+    for (size_t i = 0; i < sketch->working.count; i++)
+        if (!sketch->is_stem[i] && sketch->leaf[i] < 0 && sketch->group[i] >= 0 && is_stalk[sketch->group[i]])
+            sketch->is_tube[i] = false;
+    plm_free(is_stalk);
+    return PLM_OK;
 }
 
 plm_status plm_fruit_take_off(plm_sketch *sketch, const plm_fruit *fruit, plm_error *error)
@@ -211,7 +234,7 @@ plm_status plm_fruit_take_off(plm_sketch *sketch, const plm_fruit *fruit, plm_er
         sketch->leaflet[i] = -1;
     }
     plm_scratch_free(&scratch, NULL);
-    return status;
+    return status == PLM_OK ? drop_stalks(sketch, fruit, error) : status;
 }
 
 void plm_fruit_free(plm_fruit *fruit)
@@ -222,13 +245,10 @@ void plm_fruit_free(plm_fruit *fruit)
     *fruit = (plm_fruit){0};
 }
 
-/* ---- Both ------------------------------------------------------------------------------------------------------- */
-
-plm_status plm_sketch_leaves_and_fruit(plm_sketch *sketch, plm_error *error)
+plm_status plm_sketch_fruit(plm_sketch *sketch, plm_error *error)
 {
-    plm_fruit fruit = {0};
-    plm_status status = plm_sketch_leaves(sketch, error);
-    if (status == PLM_OK) status = plm_fruit_find(sketch, &fruit, error);
+    plm_fruit fruit;
+    plm_status status = plm_fruit_find(sketch, &fruit, error);
     if (status == PLM_OK && fruit.bunches) {
         const plm_habit asked = sketch->asked;
         sketch->asked = sketch->habit; /* which fruit does not change */

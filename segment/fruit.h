@@ -6,7 +6,7 @@
 
 /** Fruits that touch are a bunch. */
 typedef struct plm_fruit {
-    size_t bunches; /**< 0: there is no fruit, and nothing below */
+    size_t bunches; /**< 0: there is no fruit, and what is below tells nothing */
     int32_t *bunch; /**< of each working point, -1 */
     size_t *size;   /**< of each bunch, points */
     size_t touches;

@@ -121,8 +121,9 @@ static plm_status find_organs(const float (*xyz)[3], size_t count, const plm_seg
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
     if (status == PLM_OK && sketch->stem.count > 0) status = plm_sketch_stem_end(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
-    if (status == PLM_OK) status = plm_sketch_leaves_and_fruit(sketch, error);
+    if (status == PLM_OK) status = plm_sketch_leaves(sketch, error);
     if (status == PLM_OK) status = plm_deadline_check(options->deadline, error);
+    if (status == PLM_OK) status = plm_sketch_fruit(sketch, error);
     if (status == PLM_OK) status = plm_sketch_strays(sketch, error);
     return status;
 }

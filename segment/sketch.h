@@ -73,8 +73,8 @@ void plm_sketch_mark_stem(plm_sketch *sketch);
 /** Finds the leaves: side groups, habit, leaves, leaflets. */
 plm_status plm_sketch_leaves(plm_sketch *sketch, plm_error *error);
 
-/** Finds the leaves, and again without what of them is fruit on plants with a stem: leaves that are balls are none. */
-plm_status plm_sketch_leaves_and_fruit(plm_sketch *sketch, plm_error *error);
+/** Takes fruit off the leaves of a plant on a stem (leaves that are balls are none) and finds the others again without it. */
+plm_status plm_sketch_fruit(plm_sketch *sketch, plm_error *error);
 
 /** Gives few points of a blade or petiole that lie apart from it amid a stem or petiole to those. */
 plm_status plm_sketch_strays(plm_sketch *sketch, plm_error *error);

@@ -68,7 +68,8 @@ plm_status plm_stem_straighten(plm_sketch *sketch, size_t kink, double least, bo
  * a petiole and its leaflets, which noise makes thick, may be longer than that through the rest of the stem. */
 plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm_error *error);
 
-/** The same, however short that is, at the first turn near the way's end that is sharper than a stem's. */
+/** plm_stem_straighten, however short that is, at the first turn of the path's last part that is sharper than a stem's and a leaf's length
+ * before its end; *done: whether there is one. */
 plm_status plm_stem_leave_turn(plm_sketch *sketch, bool *done, plm_error *error);
 
 #endif

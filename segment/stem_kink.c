@@ -11,7 +11,7 @@ static const double KINK = 0.21;        /* radians: a turn that tells a petiole 
 static const double KINK_AT_END = 0.25; /* the same where the way ends before it has straightened again */
 static const double HAIRPIN = 1;        /* radians: a turn from up to down that no stem makes */
 /* A turn (radians) that no stem makes within the last part of a way, so far (in R) before its end: there it has run into the topmost leaf,
- * which what hangs beyond may hide. (Of 43 large virtual tomatoes seven such ways turn by 0.80 to 1.82, 5.6 R and more before the end, those
+ * which what hangs beyond may hide. (Of 43 large virtual tomatoes seven such ways turn by 0.803 to 1.82, 5.6 R and more before the end, those
  * up the stem by 0.48 at most. Nearer to the end ways turn from a rachis into a leaflet, and lower down real stems turn so.) */
 static const double WRONG = 0.8, LAST_PART = 0.85, LEAF_LONG = 5;
 static const double PLATEAU = 0.95;          /* of the largest turn: as large */
@@ -267,9 +267,10 @@ plm_status plm_stem_leave_thin(plm_sketch *sketch, double least, bool *done, plm
 plm_status plm_stem_leave_turn(plm_sketch *sketch, bool *done, plm_error *error)
 {
     const plm_stem_path *stem = &sketch->stem;
+    *done = false;
+    if (!stem->count) return PLM_OK;
     const double length = stem->along[stem->count - 1], from = LAST_PART * length;
     const double to = length - LEAF_LONG * sketch->scale.radius;
-    *done = false;
     for (size_t n = ARM; n + ARM < stem->count; n++) {
         const double turn = plm_stem_turn(stem, n);
         if (stem->along[n] < from || stem->along[n] > to || turn < WRONG) continue;

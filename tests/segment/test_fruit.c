@@ -35,7 +35,7 @@ typedef struct drawing {
     size_t count;
     float xyz[ROWS][3];
     bool may_be[ROWS], is_stem[ROWS], is_tube[ROWS], is_fruit[ROWS];
-    int32_t leaf[ROWS], leaflet[ROWS];
+    int32_t leaf[ROWS], leaflet[ROWS], group[ROWS];
     plm_random random;
 } drawing;
 
@@ -53,6 +53,7 @@ static size_t add_point(drawing *d, double x, double y, double z, int32_t leaf)
     d->may_be[i] = true;
     d->leaf[i] = leaf;
     d->leaflet[i] = leaf;
+    d->group[i] = leaf;
     return i;
 }
 
@@ -226,6 +227,7 @@ static void draw_plant(drawing *d, bool joined)
     d->sketch.habit = PLM_HABIT_COMPOUND;
     d->sketch.leaf = d->leaf;
     d->sketch.leaflet = d->leaflet;
+    d->sketch.group = d->group;
     d->sketch.is_tube = d->is_tube;
     d->sketch.is_stem = d->is_stem;
 }
@@ -316,6 +318,28 @@ static void other_plants_keep_all(void **unused)
     assert_int_equal(d.sketch.leaf_count, 3);
 }
 
+/* Bunches that touch every leaf: the truss that is left is none, large ones stay. */
+static void leaves_stay_though_all_touch_fruit(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    static int32_t bunch[ROWS];
+    size_t size[] = {5000};
+    plm_link touch[3] = {{0}};
+    plm_error error = {0};
+    draw_plant(&d, false);
+    for (size_t i = 0; i < d.count; i++) {
+        bunch[i] = d.is_fruit[i] && !d.is_tube[i] ? 0 : -1;
+        if (bunch[i] < 0 && d.leaf[i] >= 0) touch[d.leaf[i]].b = (uint32_t)i;
+        for (int k = 0; k < 3 && bunch[i] >= 0; k++) touch[k].a = (uint32_t)i;
+    }
+    const plm_fruit fruit = {.bunches = 1, .bunch = bunch, .size = size, .touches = 3, .touch = touch};
+    assert_ok(plm_fruit_take_off(&d.sketch, &fruit, &error));
+    assert_int_equal(d.sketch.leaf_count, 2);
+    for (size_t i = 0; i < d.count; i++)
+        if (d.is_fruit[i]) assert_true(d.leaf[i] < 0 && !d.is_tube[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -325,6 +349,7 @@ int main(void)
         cmocka_unit_test(a_bowl_is_no_ball),
         cmocka_unit_test(leaves_are_no_balls),
         cmocka_unit_test(fruit_is_taken_off_the_leaves),
+        cmocka_unit_test(leaves_stay_though_all_touch_fruit),
         cmocka_unit_test(a_leaf_among_fruit_stays),
         cmocka_unit_test(a_leaf_that_touches_fruit_stays_whole),
         cmocka_unit_test(other_plants_keep_all),

@@ -47,17 +47,21 @@ void virtual_plant_assert_leaves(const char *kind, const plm_scan_options *optio
     const plm_cloud *cloud = &made.scan.cloud;
     assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
                                   &error));
-    size_t other = 0, leaf = 0;
+    size_t other = 0, leaf = 0, stem = 0;
     for (size_t i = 0; i < cloud->count; i++) {
         const bool is_other = cloud->label[i] == PLM_LABEL_OTHER && made.found.label[i] != PLM_LABEL_GROUND;
         other += is_other;
         leaf += is_other && made.found.label[i] == PLM_LABEL_LEAF;
+        stem += is_other && made.found.label[i] == PLM_LABEL_STEM;
     }
-    print_message("%s, scanner %d: %zu of %zu leaves, F1 %.3f, %zu of %zu points of no organ in leaves\n", kind,
-                  (int)options->scanner, score.leaves_found, score.leaves, score.f1, leaf, other);
+    print_message(
+        "%s, scanner %d: %zu of %zu leaves, F1 %.3f, of %zu points of no organ %zu in leaves, %zu in the stem\n", kind,
+        (int)options->scanner, score.leaves_found, score.leaves, score.f1, other, leaf, stem);
     assert_int_equal(score.leaves, leaves);
     assert_int_equal(score.leaves_found, leaves);
     assert_true(score.f1 >= 0.99);
+    assert_int_equal(made.found.leaf_count, leaves);
     assert_true(leaf < other / 10);
+    assert_true(stem <= other / 40);
     virtual_plant_free(&made);
 }

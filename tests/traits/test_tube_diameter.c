@@ -6,6 +6,7 @@
 #include "traits/scene.h"
 #include "traits/tube_diameter.h"
 #include "traits/tube_fit.h"
+#include "traits/tube_moment.h"
 
 #include <math.h>
 
@@ -109,12 +110,45 @@ static void a_stem_whose_ring_is_blurred_is_no_slimmer_for_it(void **unused)
     }
 }
 
+/* Of so much of a stem's ring, the axis given: how often its middle passes for the axis. */
+static size_t rings(double arc, double noise)
+{
+    const double radius = 0.007;
+    size_t passed = 0;
+    for (uint64_t trial = 1; trial <= TRIALS; trial++) {
+        uint64_t state = trial;
+        const test_tube tube = {.end = {0, 0, 0.02}, .radius = {radius, radius}, .arc = {0, arc}};
+        static double xyz[POINTS][3];
+        test_tube_points(&tube, POINTS, &state, xyz);
+        for (size_t i = 0; i < POINTS; i++)
+            for (int k = 0; k < 3; k++) xyz[i][k] += noise * radius * test_normal(&state);
+        const plm_sampling sampling = {.noise = noise * radius, .spacing = noise * radius, .fused = true};
+        const plm_moment_query query = {.xyz = (const double(*)[3])xyz,
+                                        .count = POINTS,
+                                        .place = {0, 0, 0.01},
+                                        .along = {0, 0, 1},
+                                        .sampling = &sampling};
+        double diameter, std_error;
+        passed += plm_tube_moment(&query, &diameter, &std_error);
+    }
+    return passed;
+}
+
+static void a_part_of_a_ring_has_no_middle(void **unused)
+{
+    (void)unused;
+    assert_int_equal(rings(2 * PLM_PI, 0.5), TRIALS);
+    assert_int_equal(rings(0.5 * PLM_PI, 0.5), 0);
+    assert_int_equal(rings(PLM_PI, 0.3), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rod_as_thin_as_the_noise_is_no_thicker_for_it),
         cmocka_unit_test(a_stem_keeps_its_own_noise),
         cmocka_unit_test(a_stem_whose_ring_is_blurred_is_no_slimmer_for_it),
+        cmocka_unit_test(a_part_of_a_ring_has_no_middle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
