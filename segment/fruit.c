@@ -78,8 +78,8 @@ static plm_status drop_touched(const plm_sketch *s, size_t balls, int32_t *on, p
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
 }
 
-/* Fruits that touch are a bunch: its points, and which other points touch it. room: as many as points. */
-static plm_status find_bunches(const plm_sketch *sketch, int32_t *colour, uint32_t *room, plm_fruit *fruit,
+/* Fruits that touch are a bunch: its points, and which other points touch it. colour: 0 on fruit, else -1. room: as many as points. */
+static plm_status find_bunches(const plm_sketch *sketch, const int32_t *colour, uint32_t *room, plm_fruit *fruit,
                                plm_error *error)
 {
     const plm_graph *graph = &sketch->graph;

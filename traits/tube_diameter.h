@@ -13,7 +13,8 @@ void plm_tube_deflate(double fit, double fit_error, double spread, const plm_sam
                       double *std_error);
 
 /** Diameter at parameter t of an organ's axis, from a tube (quadratic axis, linear radius) fitted to its points within
- * reach (m along the axis) to both sides; of stems of voxel means whose ring noise blurs, by plm_tube_moment. Fills value, std_error, point_count, method, flags, or a reason to fail. */
+ * reach (m along the axis) to both sides; of stems of voxel means whose ring noise blurs, by plm_tube_moment. Fills value,
+ * std_error, point_count, method, flags, or a reason to fail. */
 plm_status plm_tube_diameter(const plm_scene *scene, const plm_organ *organ, double t, double reach, plm_estimate *out,
                              plm_error *error);
 

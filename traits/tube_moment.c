@@ -5,9 +5,9 @@
 
 #include "cloud/linear.h"
 #include "cloud/order.h"
+#include "traits/tube_fit.h"
 
 #include <math.h>
-#include <string.h>
 
 /* What adds to the mean square: of the noise's square (that along the normal, of the whole plant), and of the voxel's. (80 virtual stems from
  * depth cameras whose noise is more than 0.3 of the radius; the error is 0.066 of the diameter then. In doubt are so much of the noise's square
@@ -17,7 +17,7 @@ static const double least_square = 0.09; /* of the mean square, which the radius
 static const double far = 3;             /* medians of the distance: farther points are of something else */
 static const double seen = 0.7; /* of the directions: those that have a part of their even share of the points */
 static const double even_part = 0.25;
-enum { FEWEST = 24, ROUNDS = 3, SECTORS = 24 };
+enum { FEWEST = 24, ROUNDS = 3 };
 
 static double off_middle(const double at[2], const double middle[2])
 {
@@ -26,7 +26,7 @@ static double off_middle(const double at[2], const double middle[2])
 }
 
 /* Mean square of distances from the middle of those that are not far, and its standard error. */
-static double mean_square(double (*flat)[2], size_t count, double *std_error)
+static double mean_square(const double (*flat)[2], size_t count, double *std_error)
 {
     double squared[PLM_MOMENT_POINTS];
     double middle[2] = {0}, limit = INFINITY, sum = 0, squares = 0;
@@ -58,14 +58,15 @@ static double mean_square(double (*flat)[2], size_t count, double *std_error)
 /* Whether the points lie all around a place. */
 static bool is_ring(const double (*flat)[2], size_t count, const double place[2])
 {
-    size_t inside[SECTORS] = {0}, covered = 0;
+    size_t inside[PLM_TUBE_SECTORS] = {0}, covered = 0;
     for (size_t i = 0; i < count; i++) {
         const double turn = atan2(flat[i][1] - place[1], flat[i][0] - place[0]) / (2 * PLM_PI) + 0.5;
-        const size_t sector = (size_t)(turn * SECTORS);
-        inside[sector < SECTORS ? sector : SECTORS - 1]++;
+        const size_t sector = (size_t)(turn * PLM_TUBE_SECTORS);
+        inside[sector < PLM_TUBE_SECTORS ? sector : PLM_TUBE_SECTORS - 1]++;
     }
-    for (size_t s = 0; s < SECTORS; s++) covered += (double)inside[s] * SECTORS >= even_part * (double)count;
-    return (double)covered >= seen * SECTORS;
+    const double least = even_part * (double)count / PLM_TUBE_SECTORS;
+    for (size_t s = 0; s < PLM_TUBE_SECTORS; s++) covered += (double)inside[s] >= least;
+    return (double)covered >= seen * PLM_TUBE_SECTORS;
 }
 
 bool plm_tube_moment(const plm_moment_query *query, double *diameter, double *std_error)
@@ -77,8 +78,9 @@ bool plm_tube_moment(const plm_moment_query *query, double *diameter, double *st
     plm_frame_of_axis(query->along, u, v);
     for (size_t i = 0; i < count; i++) flat[i][0] = plm_dot(query->xyz[i], u), flat[i][1] = plm_dot(query->xyz[i], v);
     const double place[2] = {plm_dot(query->place, u), plm_dot(query->place, v)};
-    if (!is_ring((const double(*)[2])flat, count, place)) return false;
-    const double square = mean_square(flat, count, &square_error);
+    const double(*ring)[2] = (const double(*)[2])flat;
+    if (!is_ring(ring, count, place)) return false;
+    const double square = mean_square(ring, count, &square_error);
     const double voxel = sampling->pitch > 0 ? sampling->pitch : sampling->spacing;
     const double noise2 = sampling->noise * sampling->noise;
     const double radius = sqrt(fmax(square - of_noise * noise2 - of_voxel * voxel * voxel, least_square * square));

@@ -68,6 +68,14 @@ static void a_stem_keeps_its_own_noise(void **unused)
     assert_true(cover > 0.9);
 }
 
+/* Points on a tube, the same noise in all directions. */
+static void noisy_points(const test_tube *tube, size_t count, double noise, uint64_t *state, double (*xyz)[3])
+{
+    test_tube_points(tube, count, state, xyz);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) xyz[i][k] += noise * test_normal(state);
+}
+
 /* Upright stems of voxel means, measured at 20 mm by points within 10 mm of that: mean of the diameters over the true one, less 1, and
  * the share of the 95 % intervals that hold it. The axis is given. */
 static double stem_bias(double radius, double noise, double *cover)
@@ -79,9 +87,9 @@ static double stem_bias(double radius, double noise, double *cover)
         const test_tube tube = {.end = {0, 0, 0.04}, .radius = {radius, radius}, .arc = {0, 2 * PLM_PI}};
         static double points[2 * POINTS][3];
         static float xyz[2 * POINTS][3];
-        test_tube_points(&tube, 2 * POINTS, &state, points);
+        noisy_points(&tube, 2 * POINTS, noise, &state, points);
         for (size_t i = 0; i < 2 * POINTS; i++)
-            for (int k = 0; k < 3; k++) xyz[i][k] = (float)(points[i][k] + noise * test_normal(&state));
+            for (int k = 0; k < 3; k++) xyz[i][k] = (float)points[i][k];
         plm_axis axis = {.begin = -1, .end = 1, .radius = radius, .noise = noise};
         assert_true(plm_curve_line(tube.base, tube.end, 2, 1, &axis.line));
         plm_organ stem = {.label = PLM_LABEL_STEM, .count = 2 * POINTS, .xyz = xyz, .axis = &axis};
@@ -119,9 +127,7 @@ static size_t rings(double arc, double noise)
         uint64_t state = trial;
         const test_tube tube = {.end = {0, 0, 0.02}, .radius = {radius, radius}, .arc = {0, arc}};
         static double xyz[POINTS][3];
-        test_tube_points(&tube, POINTS, &state, xyz);
-        for (size_t i = 0; i < POINTS; i++)
-            for (int k = 0; k < 3; k++) xyz[i][k] += noise * radius * test_normal(&state);
+        noisy_points(&tube, POINTS, noise * radius, &state, xyz);
         const plm_sampling sampling = {.noise = noise * radius, .spacing = noise * radius, .fused = true};
         const plm_moment_query query = {.xyz = (const double(*)[3])xyz,
                                         .count = POINTS,
