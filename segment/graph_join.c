@@ -7,6 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* A sparse blade falls to many pieces, and along a tree of links between them ways take turns that no blade has. So pieces that are
+ * joined already get more links, so long against the shortest of each of the two. (Of 220 virtual plants of 5 000 to 200 000
+ * points F1 0.964 before and 0.973; of 64 rosettes 1.2 mends half as much, and 2.5 joins leaves side by side.) */
+static const float ALSO = 1.6F;
+
 /* A link between two components, in the order of Kruskal's rule. */
 static int link_order(const void *a, const void *b)
 {
@@ -105,13 +110,39 @@ static plm_status find_links(const plm_graph *graph, const plm_thinned *coarse, 
     return status;
 }
 
-plm_status plm_graph_join(plm_graph *graph, double cell, double longest, plm_error *error)
+/* Takes from a list, shortest first, the links that join and those that go beside them. parent, nearest: scratch, one a component. */
+static size_t keep_links(const int32_t *component, size_t components, bool also, link_list *list, uint32_t *parent,
+                         float *nearest)
+{
+    for (uint32_t i = 0; i < components; i++) {
+        parent[i] = i; /* union-find over components */
+        nearest[i] = INFINITY;
+    }
+    for (size_t i = 0; i < list->count; i++) {
+        const plm_link *l = &list->link[i];
+        nearest[component[l->a]] = fminf(nearest[component[l->a]], l->length);
+        nearest[component[l->b]] = fminf(nearest[component[l->b]], l->length);
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        const plm_link link = list->link[i];
+        const int32_t p = component[link.a], q = component[link.b];
+        const uint32_t a = root_of(parent, (uint32_t)p), b = root_of(parent, (uint32_t)q);
+        if (a == b && (!also || link.length > ALSO * fminf(nearest[p], nearest[q]))) continue;
+        parent[a] = b;
+        list->link[kept++] = link;
+    }
+    return kept;
+}
+
+plm_status plm_graph_join(plm_graph *graph, double cell, double longest, bool also, plm_error *error)
 {
     plm_scratch scratch = {.error = error};
     plm_thinned coarse = {0};
     link_list list = {0};
     int32_t *component = plm_scratch_take(&scratch, graph->count, sizeof *component);
     uint32_t *stack = plm_scratch_take(&scratch, graph->count, sizeof *stack);
+    float *nearest = plm_scratch_take(&scratch, graph->count, sizeof *nearest);
     plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
     if (status != PLM_OK) goto done;
     const size_t components = plm_graph_components(graph, NULL, component, stack);
@@ -121,16 +152,7 @@ plm_status plm_graph_join(plm_graph *graph, double cell, double longest, plm_err
     status = find_links(graph, &coarse, component, longest, &list, error);
     if (status != PLM_OK) goto done;
     if (list.count > 1) qsort(list.link, list.count, sizeof *list.link, link_order);
-    for (uint32_t i = 0; i < components; i++) stack[i] = i; /* union-find over components */
-    size_t kept = 0;
-    for (size_t i = 0; i < list.count; i++) {
-        const uint32_t a = root_of(stack, (uint32_t)component[list.link[i].a]);
-        const uint32_t b = root_of(stack, (uint32_t)component[list.link[i].b]);
-        if (a == b) continue;
-        stack[a] = b;
-        list.link[kept++] = list.link[i];
-    }
-    status = plm_graph_add(graph, list.link, kept, error);
+    status = plm_graph_add(graph, list.link, keep_links(component, components, also, &list, stack, nearest), error);
 done:
     plm_free(list.link);
     plm_thinned_free(&coarse);

@@ -94,7 +94,7 @@ static plm_status look_start(look *l, const plm_cloud *cloud, plm_error *error)
     double spacing;
     plm_status status = find_spacing(l, &spacing, error);
     if (status == PLM_OK) status = plm_graph_build(l->xyz, l->count, NEIGHBOURS, link * spacing, &l->graph, error);
-    if (status == PLM_OK) status = plm_graph_join(&l->graph, spacing, bridge * l->size, error);
+    if (status == PLM_OK) status = plm_graph_join(&l->graph, spacing, bridge * l->size, false, error);
     return status == PLM_OK ? plm_ball_shapes(&l->graph, ball * spacing, l->shape, error) : status;
 }
 

@@ -179,7 +179,7 @@ static plm_status judge_tubes(const plm_sketch *sketch, bool is_told, bool *beli
     if (sketch->scale.is_doubtful)
         *believed = is_rosette && leaves.largest <= 0.5 && (is_told || leaves.petioled >= PETIOLED);
     else
-        *believed = !is_rosette || is_told || sketch->leaf_count < 2 || leaves.petioled >= PETIOLED_SURE;
+        *believed = !is_rosette || is_told || !sketch->leaf_count || leaves.petioled >= PETIOLED_SURE;
     return status;
 }
 

@@ -314,8 +314,10 @@ static plm_status split_hills(work *w, size_t *feet, plm_error *error)
 
 static plm_status find_groups(work *w, plm_error *error)
 {
+    const bool stemless = !w->sketch->stem.count && w->sketch->scale.has_tubes;
     size_t feet = 0;
-    plm_status status = find_trunk(w, error);
+    plm_status status = stemless ? plm_graph_widen(&w->sketch->graph, error) : PLM_OK;
+    if (status == PLM_OK) status = find_trunk(w, error);
     if (status == PLM_OK) status = find_feet(w, &feet, error);
     if (status != PLM_OK) return status;
     bool *alive = plm_scratch_take(&w->scratch, feet + 1, sizeof *alive);
@@ -329,7 +331,6 @@ static plm_status find_groups(work *w, plm_error *error)
         for (size_t f = 0; status == PLM_OK && f < feet; f++)
             if (alive[f]) judge(w, (int32_t)f, &w->out->group[f]);
     }
-    const bool stemless = !w->sketch->stem.count && w->sketch->scale.has_tubes;
     if (status == PLM_OK && stemless) status = split_forks(w, &feet, error);
     if (status == PLM_OK)
         status = plm_touch_cut(w->sketch, w->blade_cost > 1, w->out->distance, w->sketch->group, error);

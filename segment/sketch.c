@@ -68,9 +68,9 @@ plm_status plm_sketch_link(const plm_sketch *sketch, double edge_cells, plm_grap
                            edge_cells * sketch->working.cell, graph, error);
 }
 
-plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, plm_error *error)
+plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, bool also, plm_error *error)
 {
-    return plm_graph_join(graph, sketch->working.cell, JOIN_RADII * sketch->scale.radius, error);
+    return plm_graph_join(graph, sketch->working.cell, JOIN_RADII * sketch->scale.radius, also, error);
 }
 
 /* Whether so many points have few links that the cell should grow, or grow further. */
@@ -120,7 +120,7 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
     if (tubes >= PLM_TUBES_DOUBTFUL && sketch.scale.is_doubtful) sketch.scale.has_tubes = true;
     if (tubes == PLM_TUBES_NONE) sketch.scale.has_tubes = sketch.scale.is_doubtful = false;
     if (status == PLM_OK) status = take_working(&sketch, error);
-    if (status == PLM_OK) status = plm_sketch_join(&sketch, &sketch.graph, error);
+    if (status == PLM_OK) status = plm_sketch_join(&sketch, &sketch.graph, true, error);
     if (status == PLM_OK) status = take_arrays(&sketch, error);
     if (status == PLM_OK && sketch.scale.has_tubes) status = classify(&sketch, error);
     for (size_t i = 0; status == PLM_OK && i < sketch.working.count; i++) sketch.is_tube[i] = sketch.tube[i] > 0.5f;

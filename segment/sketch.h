@@ -49,8 +49,8 @@ plm_status plm_sketch_make(const float (*xyz)[3], size_t count, size_t point_bud
 /** A graph over the working points whose edges are at most so many cells long. The caller's: plm_graph_free. */
 plm_status plm_sketch_link(const plm_sketch *sketch, double edge_cells, plm_graph *graph, plm_error *error);
 
-/** Joins the pieces of such a graph over gaps below 2.5 R. */
-plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, plm_error *error);
+/** Joins the pieces of such a graph over gaps below 2.5 R; also: as plm_graph_join. */
+plm_status plm_sketch_join(const plm_sketch *sketch, plm_graph *graph, bool also, plm_error *error);
 
 /** Sets classes right that no plant can have: tubes shorter than they are thick, specks of blade on a tube. */
 plm_status plm_sketch_tidy(plm_sketch *sketch, plm_error *error);

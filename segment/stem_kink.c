@@ -18,7 +18,7 @@ static const double PLATEAU = 0.95;          /* of the largest turn: as large */
 static const double AROUND = 1.3;            /* points within so many radii (plus noise) of a straight line are on it */
 static const double PRESENT = 0.3;           /* of the points that the stem has on such a length: it goes on */
 static const double PULL = 0.3, TURN = 0.15; /* how far a step follows the points, and the direction the steps */
-static const double THINNER = 0.75;          /* radius beyond a kink over that below: the way has left the stem, ... */
+static const double THINNER = 0.82;          /* radius beyond a kink over that below: the way has left the stem, ... */
 static const double THICKER = 1.15;          /* ... where the tube straight on is so much thicker than the way's */
 static const double UNDONE = 0.5; /* of a turn that is left where nodes beside it do not count: else the way zigzags */
 enum {

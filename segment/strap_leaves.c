@@ -53,7 +53,7 @@ static plm_status shorten_edges(plm_sketch *sketch, plm_error *error)
         if (status != PLM_OK || (double)second <= most) break;
         plm_graph_free(&graph);
     }
-    if (status == PLM_OK && graph.first) status = plm_sketch_join(sketch, &graph, error);
+    if (status == PLM_OK && graph.first) status = plm_sketch_join(sketch, &graph, false, error);
     if (status == PLM_OK && graph.first) {
         plm_graph_free(&sketch->graph);
         sketch->graph = graph;

@@ -199,6 +199,10 @@ static void the_way_leaves_the_thinner_branch_of_a_fork(void **unused)
     bool done;
     assert_true(fabs(leave_fork(1.9e-3, 1.1e-3, &done)) < 1e-3);
     assert_true(done);
+    assert_true(fabs(leave_fork(1.9e-3, 1.58e-3, &done)) < 1e-3); /* noise makes petioles of soybeans seem as thick */
+    assert_true(done);
+    assert_true(leave_fork(1.96e-3, 1.68e-3, &done) > 0.02);
+    assert_false(done);
     assert_true(leave_fork(1.1e-3, 1.9e-3, &done) > 0.02); /* the stem turns there, and a petiole goes on */
     assert_false(done);
     assert_true(leave_fork(1.1e-3, 1.1e-3, &done) > 0.02); /* nothing tells */
