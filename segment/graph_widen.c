@@ -10,8 +10,8 @@
 /* A part is sparse where the distance to the FOURTH neighbour is so much against the median's: there points are linked up to so many
  * such distances, by the shorter of theirs. */
 static const double SPARSE = 1.2, WIDE = 1.5;
-/* New links, counted from both of their ends, over the number of points: less are those between a few stray points, which do harm (0.004 to 0.04 of rosettes from depth
- * cameras; 0.22 and more of splats whose leaves fell to pieces). */
+/* New links, counted from both of their ends, over the number of points: less are those between a few stray points, which do harm (0.004 to
+ * 0.04 of rosettes from depth cameras; 0.22 and more of splats whose leaves fell to pieces). */
 static const double SHARE = 0.1;
 enum { FOURTH = 4, NEIGHBOURS = 10 };
 
