@@ -28,13 +28,13 @@ plm_status plm_graph_add(plm_graph *graph, const plm_link *link, size_t count, p
 /** Takes away the edges between points of two different colours, neither of them negative. */
 void plm_graph_part(plm_graph *graph, const int32_t *colour);
 
-/** Joins components of the graph by shortest links, none longer than longest (Kruskal's rule). also: adds links between joined ones that are
- * hardly longer than the shortest of each of the two, too, so that ways across a blade in pieces are nearly straight. cell is the spacing
- * of the points. */
+/** Joins components of the graph by shortest links, none longer than longest (Kruskal's rule). also: adds links between joined ones,
+ * at most 1.6 times as long as the shorter of the two pieces' shortest links, so that ways across a blade in pieces are nearly straight.
+ * cell is the spacing of the points. */
 plm_status plm_graph_join(plm_graph *graph, double cell, double longest, bool also, plm_error *error);
 
-/** Links points of the graph's sparse parts with those near to them by the spacing there, if such parts make up much of it: plants
- * that are evenly dense stay as they are. PLM_E_MEMORY only. */
+/** Links points of the graph's sparse parts with those near to them by the spacing there, if many such links are missing: plants that are
+ * evenly dense lack few. PLM_E_MEMORY only. */
 plm_status plm_graph_widen(plm_graph *graph, plm_error *error);
 
 void plm_graph_free(plm_graph *graph);

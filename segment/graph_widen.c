@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-/* A part is sparse where the distance to the FOURTH neighbour is so much against the median's: there points are linked up to so many
- * such distances, by the shorter of theirs. */
+/* A part is sparse where the distance to the FOURTH neighbour is more than SPARSE of the median: two points of such parts are linked up to
+ * WIDE of the shorter of their distances. */
 static const double SPARSE = 1.2, WIDE = 1.5;
-/* New links, counted from both of their ends, over the number of points: less are those between a few stray points, which do harm (0.004 to
+/* New links, counted from both of their ends, over the number of points: fewer are those between a few stray points, which do harm (0.004 to
  * 0.04 of rosettes from depth cameras; 0.22 and more of splats whose leaves fell to pieces). */
 static const double SHARE = 0.1;
 enum { FOURTH = 4, NEIGHBOURS = 10 };
@@ -22,7 +22,7 @@ static bool is_linked(const plm_graph *graph, uint32_t a, uint32_t b)
     return false;
 }
 
-/* row, squared: NEIGHBOURS a point. Gives how many links there are. */
+/* row, squared: NEIGHBOURS a point. sparse: square of the distance beyond which parts are. Gives how many links there are. */
 static size_t find_links(const plm_graph *graph, const uint32_t *row, const float *squared, double sparse,
                          plm_link *link)
 {

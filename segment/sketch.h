@@ -24,7 +24,7 @@ typedef struct plm_sketch {
     plm_thinned base;    /**< up to the point budget; working is thinned from it */
     plm_thinned working; /**< one point each max(R / 12, spacing), or more, to R / 6, where parts are sparse */
     plm_graph
-        graph; /**< over working, in one piece where gaps are below 2.5 R; broken petioles and stalks are linked later, and what touches there parted */
+        graph; /**< over working, in one piece where gaps are below 2.5 R; broken petioles and stalks, and sparse parts of rosettes, are linked later, and what touches there parted */
     plm_tube_point *point;
     float *tube; /**< probability of being tube, smoothed */
     bool *is_tube;
