@@ -138,7 +138,8 @@ static bool may_be_head(plm_habit habit, const plm_sketch *sketch)
 /* Doubtful tubes were petioles where they part the blades into leaves of which none is half of the plant, and a share PETIOLED have one,
  * unless the user says rosette. (On 24 virtual rosettes the largest has 0.33 at most, and 0.7 of the leaves have petioles. Of single leaves
  * noise parts a rim or a fold and leaves 0.57 or more, or parts them into many, of which 0.52 at most have tubes.) Of fewer than
- * PETIOLED_SURE sure tubes were none, either: 0.08 to 0.25 of three single leaves as splats, 0.59 and more of 110 rosettes. */
+ * PETIOLED_SURE sure tubes were none, either: 0.08 to 0.25 of three single leaves as splats, 0.59 and more of 110 rosettes;
+ * so a rosette of one leaf has a petiole, or is a single leaf. */
 static const double PETIOLED = 0.55, PETIOLED_SURE = 0.4;
 enum { PETIOLE_LEAST = 3 /* points */ };
 

@@ -24,9 +24,10 @@ typedef struct plm_side_groups {
     int32_t *blade_group;
 } plm_side_groups;
 
-/** Finds the side groups and writes sketch->group; the graph of a plant without a stem gets links where it is sparse (plm_graph_widen). The trunk: the stem's points, or (rosettes) the core where the
- * petioles meet. blade_cost: of a length of blade over one of tube, on the way that decides whose a point is; 1 where nothing
- * is known about the leaves, more where they are compound (their leaflets then part by plm_touch_cut's rule for them). */
+/** Finds the side groups and writes sketch->group; the graph of a plant without a stem gets links where it is sparse
+ * (plm_graph_widen). The trunk: the stem's points, or (rosettes) the core where the petioles meet. blade_cost: of a length of
+ * blade over one of tube, on the way that decides whose a point is; 1 where nothing is known about the leaves, more where
+ * they are compound (their leaflets then part by plm_touch_cut's rule for them). */
 plm_status plm_side_groups_find(plm_sketch *sketch, double blade_cost, plm_side_groups *groups, plm_error *error);
 
 /** For plants of simple leaves: splits groups of several petioles, so that each blade with a petiole of its own has a
