@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+static const double EDGE_CELLS = 2.3;
+enum { NEIGHBOURS = 10 };
+
 /* A point of the graph and the last ball that met it, which are asked for together. */
 typedef struct node {
     float xyz[3];
@@ -50,6 +53,19 @@ static void ball(const plm_graph *graph, uint32_t centre, float limit, node *at,
     }
     shape->offset = (float)plm_norm(m);
     shape->count = (uint32_t)count;
+}
+
+plm_status plm_ball_graph(const float (*xyz)[3], size_t count, double cell, bool wide, plm_graph *graph,
+                          plm_error *error)
+{
+    plm_graph out = {0};
+    plm_status status = plm_graph_build(xyz, count, NEIGHBOURS, EDGE_CELLS * cell, &out, error);
+    if (status == PLM_OK && wide) status = plm_graph_widen(&out, error);
+    if (status == PLM_OK)
+        *graph = out;
+    else
+        plm_graph_free(&out);
+    return status;
 }
 
 plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)

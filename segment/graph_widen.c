@@ -1,5 +1,6 @@
-/* segment/graph_widen.c: splats leave some leaves with a tenth of the points of others. Links that suit the dense ones leave the sparse
- * ones full of holes, and ways across them take turns, as if they were several leaves. */
+/* segment/graph_widen.c: splats leave some leaves with a tenth of the points of others, scans of few points a stem with a fifth. Links that
+ * suit the dense parts leave the sparse ones full of holes: ways across a leaf take turns, as if it were several, and balls on a stem hold
+ * two points. */
 #include "cloud/neighbours.h"
 #include "cloud/order.h"
 #include "segment/graph.h"

@@ -26,7 +26,7 @@ static const double NOISE_BALL = 5;     /* radius in sigmas of the ball that tel
 static const double NOISE_BALL_DOUBTFUL = 6.5, NOISE_GROWTH = 1.35;
 static const double TUBE_THICKNESS = 0.05; /* radius in R, at least: thinner is a line of few points */
 static const double TUBE_LEAST = 0.13;     /* tubes shorter than this share of the size are none, ... */
-static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this the petioles of a rosette; ... */
+static const double TUBE_DOUBTFUL = 0.06;  /* ... but for this a rosette's petioles, or a sparse plant's stem; ... */
 /* ... or for this where the smallest balls are so large a share of the size (COARSE), and the noise of them (BLUR), that they see little of
  * short petioles: noise over radius is 0.1 and more in small rosettes, 0.02 in heads of a few thousand points. (Rosettes of 50 to 60 mm
  * in 0.5 mm of noise: 0.028 and 0.040; 11 single leaves as blurred, 0.006 to 0.07, are not parted by such tubes.) */
@@ -100,7 +100,7 @@ static plm_status try_radius(const float (*xyz)[3], size_t count, double radius,
     const double cell = radius / BALL_CELLS;
     plm_status status = plm_thin(xyz, count, cell, &thinned, error);
     if (status == PLM_OK)
-        status = plm_graph_build((const float(*)[3])thinned.xyz, thinned.count, 10, 2.3 * cell, &graph, error);
+        status = plm_ball_graph((const float(*)[3])thinned.xyz, thinned.count, cell, false, &graph, error);
     if (status == PLM_OK) {
         shape = plm_alloc(thinned.count, sizeof *shape, error);
         value = plm_alloc(thinned.count, sizeof *value, error);

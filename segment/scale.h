@@ -14,8 +14,8 @@ typedef struct plm_scale {
     double tube_length;      /**< of all tube-like points together, at R */
     bool has_tubes;          /**< long enough, and with enough of them on rings */
     bool
-        is_doubtful; /**< so few tubes, or so noisy ones, that they may be folds and rims of a single leaf as well; then has_tubes
-                        is false as found here */
+        is_doubtful; /**< so few tubes, or so noisy ones, that they may be folds and rims of a single leaf or a head as well (judge_tubes.h);
+                        then has_tubes is false as found here */
     bool is_blurred; /**< so few and noisy points for the size that a rosette's petioles hardly show as tubes */
     bool rises;      /**< tube length still grew at the largest R: leaves may pass as stems */
 } plm_scale;

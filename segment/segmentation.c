@@ -6,6 +6,7 @@
 #include "segment/blade_base.h"
 #include "segment/core.h"
 #include "segment/head.h"
+#include "segment/judge_tubes.h"
 #include "segment/petiole_foot.h"
 #include "segment/rosette_borders.h"
 #include "segment/rosette_links.h"
@@ -135,55 +136,6 @@ static bool may_be_head(plm_habit habit, const plm_sketch *sketch)
     return habit == PLM_HABIT_HEAD || (habit == PLM_HABIT_UNKNOWN && !sketch->scale.has_tubes && bladed);
 }
 
-/* Doubtful tubes were petioles where they part the blades into leaves of which none is half of the plant, and a share PETIOLED have one,
- * unless the user says rosette. (On 24 virtual rosettes the largest has 0.33 at most, and 0.7 of the leaves have petioles. Of single leaves
- * noise parts a rim or a fold and leaves 0.57 or more, or parts them into many, of which 0.52 at most have tubes.) Of fewer than
- * PETIOLED_SURE sure tubes were none, either: 0.08 to 0.25 of three single leaves as splats, 0.59 and more of 110 rosettes;
- * so a rosette of one leaf has a petiole, or is a single leaf. */
-static const double PETIOLED = 0.55, PETIOLED_SURE = 0.4;
-enum { PETIOLE_LEAST = 3 /* points */ };
-
-/* Leaves of a rosette. */
-typedef struct rosette_leaves {
-    double largest;  /* share of the blades' points in one of them */
-    double petioled; /* share that has petioles */
-} rosette_leaves;
-
-static plm_status look_at_leaves(const plm_sketch *sketch, rosette_leaves *leaves, plm_error *error)
-{
-    plm_scratch scratch = {.error = error};
-    size_t *blade = plm_scratch_take(&scratch, sketch->leaf_count + 1, sizeof *blade);
-    size_t *petiole = plm_scratch_take(&scratch, sketch->leaf_count + 1, sizeof *petiole);
-    const plm_status status = scratch.failed ? PLM_E_MEMORY : PLM_OK;
-    if (status == PLM_OK) {
-        size_t all = 0, largest = 0, petioled = 0;
-        for (size_t i = 0; i < sketch->working.count; i++)
-            if (sketch->leaf[i] >= 0) ++(sketch->is_tube[i] ? petiole : blade)[sketch->leaf[i]];
-        for (size_t k = 0; k < sketch->leaf_count; k++) {
-            all += blade[k];
-            if (blade[k] > largest) largest = blade[k];
-            petioled += petiole[k] >= PETIOLE_LEAST;
-        }
-        leaves->largest = all ? (double)largest / (double)all : 1;
-        leaves->petioled = sketch->leaf_count ? (double)petioled / (double)sketch->leaf_count : 0;
-    }
-    plm_scratch_free(&scratch, NULL);
-    return status;
-}
-
-/* Whether the tubes were petioles, by the leaves that were found with them; is_told: who says rosette saw petioles. */
-static plm_status judge_tubes(const plm_sketch *sketch, bool is_told, bool *believed, plm_error *error)
-{
-    const bool is_rosette = sketch->habit == PLM_HABIT_ROSETTE;
-    rosette_leaves leaves = {0};
-    const plm_status status = is_rosette ? look_at_leaves(sketch, &leaves, error) : PLM_OK;
-    if (sketch->scale.is_doubtful)
-        *believed = is_rosette && leaves.largest <= 0.5 && (is_told || leaves.petioled >= PETIOLED);
-    else
-        *believed = !is_rosette || is_told || !sketch->leaf_count || leaves.petioled >= PETIOLED_SURE;
-    return status;
-}
-
 /* The voxels whose means the points are, and how strongly these gather in them; 0 where they are none. */
 static plm_status find_voxels(const float (*xyz)[3], size_t count, plm_scale *scale, plm_error *error)
 {
@@ -266,7 +218,7 @@ plm_status plm_segment(const plm_cloud *cloud, const uint8_t *label, const bool 
     status = find_organs((const float(*)[3])xyz, count, options, tubes, &sketch, error);
     bool believed = true; /* who says anything but rosette knows */
     if (status == PLM_OK && tubes != PLM_TUBES_SURE)
-        status = judge_tubes(&sketch, tubes == PLM_TUBES_ANY, &believed, error);
+        status = plm_judge_tubes(&sketch, tubes == PLM_TUBES_ANY, &believed, error);
     if (status == PLM_OK && !believed)
         status = find_organs((const float(*)[3])xyz, count, options, PLM_TUBES_NONE, &sketch, error);
     if (status == PLM_OK && sketch.habit == PLM_HABIT_COMPOUND) status = result_leaflets(&out, error);

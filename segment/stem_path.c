@@ -1,8 +1,9 @@
-/* segment/stem_path.c: the main stem: the cheapest way from the base to the highest thick tube, where thick tubes are
- * cheap and blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
+/* segment/stem_path.c: the main stem: the cheapest way from the base to its top (stem_top.c), where thick tubes are cheap and
+ * blades dear; cut where it becomes as thin as a petiole; centred, and its radius measured along it. */
 #include "cloud/linear.h"
 #include "segment/scratch.h"
 #include "segment/stem_fit.h"
+#include "segment/stem_top.h"
 
 #include <string.h>
 
@@ -11,11 +12,9 @@ static const double COST_LEAST = 0.25, COST_MOST = 16, COST_BLADE = 60;
 static const double THIN_END = 0.55; /* of the lower stem's radius: the stem has become a petiole */
 /* A stem that tapers goes on where it is so thick against what its lower part's taper gives there, while it turns (radians) less. */
 static const double TAPERED = 0.7, STRAIGHT = 0.21; /* the latter as KINK in stem_kink.c */
-static const double THIN_WAY = 0.6; /* of the radius on the way so far (over MEMORY, in R): thinner is no stem, ... */
-static const double MEMORY = 6, TAPER = 0.65; /* which falls along the way, at most to this share of the lower stem's */
-static const double THIN_LOSS = 2;            /* ... and a length of it takes off so many */
-static const double LOWER_SHARE = 0.6;        /* of the path: where the stem's radius is taken from */
-static const double FOOT_SHARE = 0.2;         /* of the path: the foot, which is bare */
+static const double TAPER = 0.65;      /* of the lower stem's radius: less no taper says; as in stem_top.c */
+static const double LOWER_SHARE = 0.6; /* of the path: where the stem's radius is taken from */
+static const double FOOT_SHARE = 0.2;  /* of the path: the foot, which is bare */
 static const double RISE_LEAST = 0.2, RISE_ASKED = 0.15; /* of the size: less is no stem; asked for by the user */
 static const double PIECE_SHARE = 0.2;                /* of the longest piece of tube: the base is on such a one, ... */
 static const double PIECE_LEAST = 2, PIECE_GAP = 2.5; /* ... or on an upright one of this length so far below, in R */
@@ -46,14 +45,7 @@ static uint32_t extreme_point(const plm_sketch *sketch, const bool *candidate, b
     return best;
 }
 
-/* The ways from the base to every point. */
-typedef struct tube_ways {
-    float *distance;
-    uint32_t *parent, *order;
-    size_t reached;
-} tube_ways;
-
-static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, tube_ways *ways, plm_error *error)
+static plm_status tube_walk(const plm_sketch *sketch, uint32_t base, plm_tube_ways *ways, plm_error *error)
 {
     float *weight = plm_alloc(sketch->working.count, sizeof *weight, error);
     if (!weight) return PLM_E_MEMORY;
@@ -139,52 +131,6 @@ static plm_status find_candidates(const plm_sketch *sketch, bool *candidate, plm
         choose_pieces(sketch, piece, components);
         for (size_t i = 0; i < count; i++)
             candidate[i] = component[i] >= 0 && is_thick(sketch, i) && piece[component[i]].is_candidate;
-    }
-    plm_scratch_free(&scratch, NULL);
-    return scratch.failed ? PLM_E_MEMORY : PLM_OK;
-}
-
-/* Typical radius of the tube points on the lower part of the way from a point to the base. */
-static double lower_radius(const plm_sketch *sketch, uint32_t top, const uint32_t *parent, float *value)
-{
-    size_t length = 0, count = 0, k = 0;
-    for (uint32_t i = top; i != UINT32_MAX; i = parent[i]) length++;
-    for (uint32_t i = top; i != UINT32_MAX; i = parent[i], k++)
-        if ((double)(length - k) < LOWER_SHARE * (double)length && sketch->is_tube[i])
-            value[count++] = sketch->point[i].radius;
-    return count ? plm_quantile(value, count, 0.5) : sketch->scale.stem_radius;
-}
-
-/* The end of the stem: the point to which the way from the base is thick for the longest, what is thin on the way taken
- * off twice. A length counts by the square of its radius over the way's so far: a long petiole, hardly slimmer than the
- * stem, would else win over the rest of the stem. The highest thick point may stand on a petiole that rises beyond the
- * stem's tip. */
-static plm_status thickest_way(const plm_sketch *sketch, const tube_ways *ways, uint32_t *top, plm_error *error)
-{
-    const size_t count = sketch->working.count;
-    plm_scratch scratch = {.error = error};
-    float *gain = plm_scratch_take(&scratch, count, sizeof *gain);
-    float *usual = plm_scratch_take(&scratch, count, sizeof *usual); /* radius of the stem on the way so far */
-    if (!scratch.failed) {
-        const uint32_t *parent = ways->parent;
-        const float lower = (float)lower_radius(sketch, *top, parent, gain);
-        const double memory = MEMORY * sketch->scale.radius;
-        for (size_t i = 0; i < count; i++) gain[i] = 0, usual[i] = lower;
-        uint32_t best = *top;
-        for (size_t k = 0; k < ways->reached; k++) {
-            const uint32_t i = ways->order[k];
-            if (parent[i] == UINT32_MAX) continue;
-            const double length = plm_graph_length(&sketch->graph, i, parent[i]), radius = sketch->point[i].radius;
-            const double before = usual[parent[i]], share = fmin(length / memory, 1);
-            const bool is_stout = sketch->is_tube[i] && radius >= THIN_WAY * before;
-            const double slimmer = fmax(before + share * (fmin(radius, before) - before), TAPER * lower);
-            const double thick = fmin(radius / before, 1);
-            gain[i] = gain[parent[i]] + (float)(length * (is_stout ? thick * thick : -THIN_LOSS));
-            usual[i] = (float)(is_stout ? slimmer : before);
-        }
-        for (uint32_t i = 0; i < count; i++)
-            if (isfinite(ways->distance[i]) && gain[i] > gain[best]) best = i;
-        *top = best;
     }
     plm_scratch_free(&scratch, NULL);
     return scratch.failed ? PLM_E_MEMORY : PLM_OK;
@@ -481,9 +427,9 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     if (plm_leaves_look_like_tubes(sketch)) return plm_sketch_upright_stem(sketch, error);
     plm_scratch scratch = {.error = error};
     bool *candidate = plm_scratch_take(&scratch, count, sizeof *candidate);
-    tube_ways ways = {.distance = plm_scratch_take(&scratch, count, sizeof *ways.distance),
-                      .parent = plm_scratch_take(&scratch, count, sizeof *ways.parent),
-                      .order = plm_scratch_take(&scratch, count, sizeof *ways.order)};
+    plm_tube_ways ways = {.distance = plm_scratch_take(&scratch, count, sizeof *ways.distance),
+                          .parent = plm_scratch_take(&scratch, count, sizeof *ways.parent),
+                          .order = plm_scratch_take(&scratch, count, sizeof *ways.order)};
     plm_status status = scratch.failed ? PLM_E_MEMORY : find_candidates(sketch, candidate, error);
     if (status != PLM_OK) goto done;
     const uint32_t base = extreme_point(sketch, candidate, false);
@@ -492,7 +438,7 @@ plm_status plm_sketch_stem(plm_sketch *sketch, plm_error *error)
     if (status != PLM_OK) goto done;
     for (size_t i = 0; i < count; i++) candidate[i] = candidate[i] && isfinite(ways.distance[i]);
     uint32_t top = extreme_point(sketch, candidate, true);
-    status = thickest_way(sketch, &ways, &top, error);
+    status = plm_stem_top(sketch, &ways, &top, error);
     if (status == PLM_OK) status = plm_stem_trace(sketch, ways.parent, base, top, false, error);
 done:
     plm_scratch_free(&scratch, NULL);

@@ -1,5 +1,5 @@
-/* segment/tube_weights.h: the logistic formula of segment/tube_class.c: rows are ball sizes, columns features. Written
- * by bench/train_tubes. Internal. */
+/* segment/tube_weights.h: the logistic formula of segment/tube_class.c: rows are ball sizes, columns features. Fitted once
+ * to virtual plants, by a script that was not kept. Internal. */
 #ifndef PLANTIMETER_SEGMENT_TUBE_WEIGHTS_H
 #define PLANTIMETER_SEGMENT_TUBE_WEIGHTS_H
 
