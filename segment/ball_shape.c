@@ -55,17 +55,9 @@ static void ball(const plm_graph *graph, uint32_t centre, float limit, node *at,
     shape->count = (uint32_t)count;
 }
 
-plm_status plm_ball_graph(const float (*xyz)[3], size_t count, double cell, bool wide, plm_graph *graph,
-                          plm_error *error)
+plm_status plm_ball_graph(const float (*xyz)[3], size_t count, double cell, plm_graph *graph, plm_error *error)
 {
-    plm_graph out = {0};
-    plm_status status = plm_graph_build(xyz, count, NEIGHBOURS, EDGE_CELLS * cell, &out, error);
-    if (status == PLM_OK && wide) status = plm_graph_widen(&out, error);
-    if (status == PLM_OK)
-        *graph = out;
-    else
-        plm_graph_free(&out);
-    return status;
+    return plm_graph_build(xyz, count, NEIGHBOURS, EDGE_CELLS * cell, graph, error);
 }
 
 plm_status plm_ball_shapes(const plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)

@@ -14,10 +14,8 @@ typedef struct plm_ball_shape {
     uint32_t count;  /**< points in it */
 } plm_ball_shape;
 
-/** Links points, of which there is one a voxel of so wide a cell, so that the balls below tell tubes: by the cell, and (wide) by the
- * spacing of sparse parts, too. Balls on a sparse stem hold a few of its points else, which do not tell its radius. PLM_E_MEMORY only. */
-plm_status plm_ball_graph(const float (*xyz)[3], size_t count, double cell, bool wide, plm_graph *graph,
-                          plm_error *error);
+/** Links points, of which there is one a voxel of so wide a cell, so that the balls below tell tubes. PLM_E_MEMORY only. */
+plm_status plm_ball_graph(const float (*xyz)[3], size_t count, double cell, plm_graph *graph, plm_error *error);
 
 /** Shapes of the balls of a radius around every point of the graph: shape has graph->count rows, the caller's. Parallel.
  * O(points x points in a ball). */

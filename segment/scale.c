@@ -99,8 +99,7 @@ static plm_status try_radius(const float (*xyz)[3], size_t count, double radius,
     float *value = NULL;
     const double cell = radius / BALL_CELLS;
     plm_status status = plm_thin(xyz, count, cell, &thinned, error);
-    if (status == PLM_OK)
-        status = plm_ball_graph((const float(*)[3])thinned.xyz, thinned.count, cell, false, &graph, error);
+    if (status == PLM_OK) status = plm_ball_graph((const float(*)[3])thinned.xyz, thinned.count, cell, &graph, error);
     if (status == PLM_OK) {
         shape = plm_alloc(thinned.count, sizeof *shape, error);
         value = plm_alloc(thinned.count, sizeof *value, error);

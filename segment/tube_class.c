@@ -62,27 +62,18 @@ static void take_over(const plm_ball_shape *shape, const plm_thinned *copy, cons
     }
 }
 
-/* Shapes of the balls of one size about the points of the copy. */
-static plm_status find_shapes(const plm_thinned *copy, double cell, double radius, bool wide, plm_ball_shape *shape,
-                              plm_error *error)
-{
-    plm_graph graph = {0};
-    plm_status status = plm_ball_graph((const float(*)[3])copy->xyz, copy->count, cell, wide, &graph, error);
-    if (status == PLM_OK) status = plm_ball_shapes(&graph, radius, shape, error);
-    plm_graph_free(&graph);
-    return status;
-}
-
-/* The same by links as far as sparse parts want, where else too few points are in a ball. */
-static plm_status widen_few(const plm_thinned *copy, double cell, double radius, plm_ball_shape *shape,
-                            plm_error *error)
+/* Where too few points are in a ball, its shape by links as far as sparse parts want; the graph keeps these. */
+static plm_status widen_few(plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)
 {
     size_t few = 0;
-    for (size_t i = 0; i < copy->count; i++) few += shape[i].count < FEW;
+    for (size_t i = 0; i < graph->count; i++) few += shape[i].count < FEW;
     if (!few) return PLM_OK;
-    plm_ball_shape *wide = plm_alloc(copy->count, sizeof *wide, error);
-    plm_status status = wide ? find_shapes(copy, cell, radius, true, wide, error) : PLM_E_MEMORY;
-    for (size_t i = 0; status == PLM_OK && i < copy->count; i++)
+    const uint32_t edges = graph->first[graph->count];
+    plm_status status = plm_graph_widen(graph, error);
+    if (status != PLM_OK || graph->first[graph->count] == edges) return status;
+    plm_ball_shape *wide = plm_alloc(graph->count, sizeof *wide, error);
+    status = wide ? plm_ball_shapes(graph, radius, wide, error) : PLM_E_MEMORY;
+    for (size_t i = 0; status == PLM_OK && i < graph->count; i++)
         if (shape[i].count < FEW) shape[i] = wide[i];
     plm_free(wide);
     return status;
@@ -95,15 +86,18 @@ plm_status plm_tube_points(const float (*base)[3], size_t base_count, const plm_
     plm_status status = nearest ? nearest_base(base, base_count, working, nearest, error) : PLM_E_MEMORY;
     for (int k = 0; k < PLM_TUBE_SCALES && status == PLM_OK; k++) {
         plm_thinned copy = {0};
+        plm_graph graph = {0};
         plm_ball_shape *shape = NULL;
         const double radius = BALL_RADIUS[k] * scale->radius, cell = fmax(radius / BALL_CELLS, scale->spacing);
         status = plm_thin(base, base_count, cell, &copy, error);
         if (status == PLM_OK && !(shape = plm_alloc(copy.count, sizeof *shape, error))) status = PLM_E_MEMORY;
-        if (status == PLM_OK) status = find_shapes(&copy, cell, radius, false, shape, error);
+        if (status == PLM_OK) status = plm_ball_graph((const float(*)[3])copy.xyz, copy.count, cell, &graph, error);
+        if (status == PLM_OK) status = plm_ball_shapes(&graph, radius, shape, error);
         /* The formula was fitted without these; in the smaller balls of sparse parts they make blades of noise look like tubes. */
-        if (status == PLM_OK && k >= SCALE_OF_R) status = widen_few(&copy, cell, radius, shape, error);
+        if (status == PLM_OK && k >= SCALE_OF_R) status = widen_few(&graph, radius, shape, error);
         if (status == PLM_OK) take_over(shape, &copy, nearest, working->count, k, scale, point);
         plm_free(shape);
+        plm_graph_free(&graph);
         plm_thinned_free(&copy);
     }
     plm_free(nearest);

@@ -5,44 +5,30 @@
 #include "segment/ball_shape.h"
 #include "segment/judge_tubes.h"
 #include "segment/stem_top.h"
-#include "support/label_score.h"
 #include "support/virtual_plant.h"
 
 #include <math.h>
 #include <string.h>
 
-/* All leaves are found, on so much of the stem. */
-static void check_plant(const char *kind, double stem, const plm_scan_options *options)
-{
-    plm_error error = {0};
-    label_score score;
-    virtual_plant made = virtual_plant_make(kind, 0, options);
-    const plm_cloud *cloud = &made.scan.cloud;
-    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
-                                  &error));
-    print_message("%s: habit %s, leaves %zu of %zu, F1 %.3f, stem IoU %.3f\n", kind, plm_habit_name(made.found.habit),
-                  made.found.leaf_count, made.plant.leaf_count, score.f1, score.iou[PLM_LABEL_STEM]);
-    assert_int_equal(made.found.habit, PLM_HABIT_SIMPLE);
-    assert_int_equal(made.found.leaf_count, made.plant.leaf_count);
-    assert_true(score.f1 == 1);
-    assert_true(score.iou[PLM_LABEL_STEM] > stem);
-    virtual_plant_free(&made);
-}
-
 /* Was one leaf on a short stem, all the others its leaflets: the way up ended at the first node. */
 static void the_stem_goes_up_to_the_last_leaf(void **unused)
 {
     (void)unused;
-    check_plant("eggplant", 0.85,
-                &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 277024, .points = 5087, .noise = 3.3e-4});
+    assert_int_equal(
+        virtual_plant_assert_stem(
+            "eggplant", 0.85,
+            &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 277024, .points = 5087, .noise = 3.3e-4}),
+        PLM_HABIT_SIMPLE);
 }
 
 /* Was a head: its tubes are too short in sum. */
 static void few_tubes_are_a_stem_and_petioles(void **unused)
 {
     (void)unused;
-    check_plant("okra", 0.6,
-                &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 43, .points = 4500, .noise = 2e-4});
+    assert_int_equal(
+        virtual_plant_assert_stem(
+            "okra", 0.6, &(plm_scan_options){.scanner = PLM_SCANNER_DOME, .seed = 43, .points = 4500, .noise = 2e-4}),
+        PLM_HABIT_SIMPLE);
 }
 
 enum { MOST = 4000 };
@@ -182,7 +168,7 @@ static void a_rosette_is_told_by_its_petioles(void **unused)
     assert_false(is_sure(15, 5)); /* a few points of noise on a single leaf */
 }
 
-/* A point every 1.6 and 2.1 radians up a tube of radius 1, beside a dense sheet: gives the radius that a ball tells. */
+/* A tube of radius 1, up which points wind in steps of 1.6 and 2.1 radians, beside a dense sheet; gives the radius that a ball tells. */
 static double ball_value_on_tube(bool wide)
 {
     plm_error error = {0};
@@ -198,7 +184,8 @@ static double ball_value_on_tube(bool wide)
         xyz[count][1] = (float)sin(2.1 * k);
         xyz[count][2] = 1.6f * (float)k;
     }
-    assert_ok(plm_ball_graph((const float(*)[3])xyz, count, 1, wide, &graph, &error));
+    assert_ok(plm_ball_graph((const float(*)[3])xyz, count, 1, &graph, &error));
+    if (wide) assert_ok(plm_graph_widen(&graph, &error));
     assert_ok(plm_ball_shapes(&graph, 6, shape, &error));
     plm_graph_free(&graph);
     const float *value = shape[tube + 60].value;

@@ -5,27 +5,14 @@
 #include "cloud/linear.h"
 #include "segment/stem_fit.h"
 #include "segment/stem_rachis.h"
-#include "support/label_score.h"
 #include "support/virtual_plant.h"
 
 #include <math.h>
 #include <string.h>
 
-/* All leaves are found, and so much of the stem. */
 static void check_soybean(const plm_scan_options *options, double stem)
 {
-    plm_error error = {0};
-    label_score score;
-    virtual_plant made = virtual_plant_make("soybean", 0, options);
-    const plm_cloud *cloud = &made.scan.cloud;
-    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
-                                  &error));
-    print_message("leaves %zu of %zu, F1 %.3f, stem IoU %.3f\n", score.leaves_found, score.leaves, score.f1,
-                  score.iou[PLM_LABEL_STEM]);
-    assert_int_equal(made.found.leaf_count, made.plant.leaf_count);
-    assert_true(score.f1 == 1);
-    assert_true(score.iou[PLM_LABEL_STEM] > stem);
-    virtual_plant_free(&made);
+    virtual_plant_assert_stem("soybean", stem, options);
 }
 
 static void leaflets_at_the_end_of_the_way_are_no_leaves(void **unused)

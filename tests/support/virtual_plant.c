@@ -65,3 +65,21 @@ void virtual_plant_assert_leaves(const char *kind, const plm_scan_options *optio
     assert_true(stem <= other / 40);
     virtual_plant_free(&made);
 }
+
+plm_habit virtual_plant_assert_stem(const char *kind, double stem, const plm_scan_options *options)
+{
+    plm_error error = {0};
+    label_score score;
+    virtual_plant made = virtual_plant_make(kind, 0, options);
+    const plm_cloud *cloud = &made.scan.cloud;
+    const plm_habit habit = made.found.habit;
+    assert_ok(label_score_compute(cloud->count, cloud->label, cloud->organ, made.found.label, made.found.organ, &score,
+                                  &error));
+    print_message("%s: habit %s, leaves %zu of %zu, F1 %.3f, stem IoU %.3f\n", kind, plm_habit_name(habit),
+                  score.leaves_found, score.leaves, score.f1, score.iou[PLM_LABEL_STEM]);
+    assert_int_equal(made.found.leaf_count, made.plant.leaf_count);
+    assert_true(score.f1 == 1);
+    assert_true(score.iou[PLM_LABEL_STEM] > stem);
+    virtual_plant_free(&made);
+    return habit;
+}

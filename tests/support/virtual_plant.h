@@ -22,6 +22,10 @@ plm_segmentation virtual_plant_as(const virtual_plant *made, plm_habit habit);
  * the points that are of no organ (tassels, fruit) are in leaves. The plant's resolution is 0.3. */
 void virtual_plant_assert_leaves(const char *kind, const plm_scan_options *options, size_t leaves);
 
+/** Fails the test unless all of the leaves are found and no more, F1 is 1, and the stem's IoU is above so much. Gives the habit that was
+ * found. The plant's resolution is the default. */
+plm_habit virtual_plant_assert_stem(const char *kind, double stem, const plm_scan_options *options);
+
 void virtual_plant_free(virtual_plant *made);
 
 #endif
