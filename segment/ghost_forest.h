@@ -1,20 +1,12 @@
-/* segment/ghost_forest.h: boosted trees of segment/ghosts.c; a feature above its threshold goes to the right.
- * Written by bench/accuracy/train_ghosts.py. Internal. */
+/* segment/ghost_forest.h: the trees of segment/ghosts.c. Written by bench/accuracy/train_ghosts.py. Internal. */
 #ifndef PLANTIMETER_SEGMENT_GHOST_FOREST_H
 #define PLANTIMETER_SEGMENT_GHOST_FOREST_H
 
-#include <math.h>
-#include <stdint.h>
-
-enum { GHOST_NODES = 31 };
+#include "segment/forest.h"
 
 static const double GHOST_BIAS = -1.84924;
 /* clang-format off */
-static const struct {
-    uint8_t feature[GHOST_NODES];
-    float threshold[GHOST_NODES];
-    float leaf[GHOST_NODES + 1];
-} GHOST_TREE[64] = {
+static const plm_tree GHOST_TREE[64] = {
     {{2, 7, 22, 4, 22, 0, 0, 6, 21, 22, 22, 0, 0, 0, 0, 16, 21, 2, 19, 0, 1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0},
      {1.32387F, 0.869954F, -3.19124F, 1.07414F, -0.247442F, INFINITY, INFINITY, 0.339056F, 0.145888F, -1.5828F, -0.206898F, INFINITY, INFINITY, INFINITY, INFINITY, 0.436724F, 0.0808455F, 0.351314F, 0.604018F, 1.38602F, 0.721809F, 0.667798F, 1.38602F, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY, INFINITY},
      {-0.323938F, -0.194936F, 1.92053F, -0.0334841F, -0.125298F, 2.15144F, -0.327863F, 0.552615F, -0.303761F, 1.04803F, 0.302044F, 2.08119F, -0.139567F, 1.00648F, -0.175944F, 0.789819F, -0.116458F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F, 2.19394F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F, -0.0F}},

@@ -144,12 +144,5 @@ plm_status plm_ghost_features(const float (*xyz)[3], size_t count, float (*featu
 
 double plm_ghost_probability(const float feature[PLM_GHOST_FEATURES])
 {
-    double sum = GHOST_BIAS;
-    for (size_t k = 0; k < sizeof GHOST_TREE / sizeof *GHOST_TREE; k++) {
-        size_t node = 0; /* a full binary tree: children of node n are 2 n + 1 and 2 n + 2 */
-        while (node < GHOST_NODES)
-            node = 2 * node + 1 + (feature[GHOST_TREE[k].feature[node]] > GHOST_TREE[k].threshold[node]);
-        sum += (double)GHOST_TREE[k].leaf[node - GHOST_NODES];
-    }
-    return 1 / (1 + exp(-sum));
+    return plm_forest_probability(GHOST_BIAS, GHOST_TREE, sizeof GHOST_TREE / sizeof *GHOST_TREE, feature);
 }

@@ -1,9 +1,11 @@
 /* segment/tube_class.c: a blade is flat at every scale, its rim and tip included; a tube is round up to a few radii and
- * long beyond. One logistic formula over the shapes of balls of six sizes, in units of R, with the noise taken off. */
+ * long beyond. One logistic formula over the shapes of balls of six sizes, in units of R, with the noise taken off; trees over
+ * the same where so few points are around that these shapes scatter. */
 #include "segment/tube_class.h"
 
 #include "cloud/linear.h"
 #include "segment/scratch.h"
+#include "segment/sparse_tube_forest.h"
 #include "segment/tube_weights.h"
 
 static const double BALL_RADIUS[PLM_TUBE_SCALES] = {0.35, 0.5, 0.71, 1, 1.41, 2};
@@ -54,6 +56,7 @@ static void take_over(const plm_ball_shape *shape, const plm_thinned *copy, cons
         const plm_ball_shape *s = &shape[copy->voxels.owner[nearest[i]]];
         shape_features(s, radius, noise, point[i].feature[scale_number]);
         if (scale_number != SCALE_OF_R) continue;
+        point[i].count = s->count;
         point[i].radius = (float)sqrt(fmax((double)s->value[1] + s->value[2] - 2 * noise * noise, 0));
         for (int axis = 0; axis < 3; axis++) {
             point[i].axis[axis] = s->axis[axis];
@@ -93,8 +96,7 @@ plm_status plm_tube_points(const float (*base)[3], size_t base_count, const plm_
         if (status == PLM_OK && !(shape = plm_alloc(copy.count, sizeof *shape, error))) status = PLM_E_MEMORY;
         if (status == PLM_OK) status = plm_ball_graph((const float(*)[3])copy.xyz, copy.count, cell, &graph, error);
         if (status == PLM_OK) status = plm_ball_shapes(&graph, radius, shape, error);
-        /* The formula was fitted without these; in the smaller balls of sparse parts they make blades of noise look like tubes. */
-        if (status == PLM_OK && k >= SCALE_OF_R) status = widen_few(&graph, radius, shape, error);
+        if (status == PLM_OK) status = widen_few(&graph, radius, shape, error);
         if (status == PLM_OK) take_over(shape, &copy, nearest, working->count, k, scale, point);
         plm_free(shape);
         plm_graph_free(&graph);
@@ -106,6 +108,9 @@ plm_status plm_tube_points(const float (*base)[3], size_t base_count, const plm_
 
 float plm_tube_probability(const plm_tube_point *point)
 {
+    if (point->count < PLM_TUBE_SPARSE)
+        return (float)plm_forest_probability(SPARSE_TUBE_BIAS, SPARSE_TUBE_TREE,
+                                             sizeof SPARSE_TUBE_TREE / sizeof *SPARSE_TUBE_TREE, &point->feature[0][0]);
     double sum = TUBE_BIAS;
     for (int k = 0; k < PLM_TUBE_SCALES; k++)
         for (int f = 0; f < PLM_TUBE_FEATURES; f++) sum += TUBE_WEIGHT[k][f] * point->feature[k][f];

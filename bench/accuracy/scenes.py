@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Scenes as they come: how often the organs of a virtual plant are found when scanner, sampling, noise and surroundings are drawn.
 
-    scenes.py --program PLANTIMETER -o OUT [--count N] [--seed S] [--kinds A,B,...] [--least-exact SHARE]
+    scenes.py --program PLANTIMETER -o OUT [--count N] [--seed S] [--kinds A,B,...] [--points LEAST MOST] [--least-exact SHARE]
 
-Draws N scenes (the same by the same seed): a kind of plant, a scanner, 5 000 to 200 000 points, noise, floaters, views, pot,
-table or neither, points or gaussians. Makes each by `plantimeter simulate`, measures it at default options, and writes
+Draws N scenes (the same by the same seed): a kind of plant, a scanner, 5 000 to 200 000 points (or LEAST to MOST), noise, floaters,
+views, pot, table or neither, points or gaussians. Makes each by `plantimeter simulate`, measures it at default options, and writes
 OUT/scenes.csv, a row a scene: mean_iou over stem + petiole and leaf, f1 of the leaves at IoU 0.5, how many there are and were
 found, share of the ground's points that were called plant, what the habit was guessed to be, and seconds. Prints the means by
 scanner and surroundings, and the worst scenes.
@@ -14,6 +14,7 @@ A population (population.py) tells how exact the traits are on usual scans; this
 import argparse
 import csv
 import json
+import math
 import os
 import random
 import subprocess
@@ -34,14 +35,15 @@ SEEDLINGS = ["eggplant", "pepper", "okra", "cucumber", "tomato", "soybean", "mai
 LARGE = ["tomato_large", "cucumber_large", "maize_large", "arabidopsis_large"]  # too far off for depth cameras
 FIELDS = ("scene", "kind", "scanner", "surroundings", "options", "habit", "mean_iou", "f1", "leaves", "found",
           "ground_left", "seconds")
+POINTS = (10 ** 3.7, 10 ** 5.3)  # least and most, equally likely in logarithms
 WORST = 8
 
 
-def draw_scene(draw, number, kinds):
+def draw_scene(draw, number, kinds, points=POINTS):
     """Kind, scanner, surroundings and options of simulate."""
     kind = kinds[number % len(kinds)]
     scanner = draw.choice(["dome", "uniform", "splat"] + (["rgbd"] if kind not in LARGE else []))
-    options = ["--points", str(int(10 ** draw.uniform(3.7, 5.3)))]
+    options = ["--points", str(int(10 ** draw.uniform(math.log10(points[0]), math.log10(points[1]))))]
     if scanner == "rgbd":
         options += ["--noise", f"{draw.uniform(0.2, 0.8):.2f}", "--views", str(draw.choice([6, 8, 12, 12, 20])),
                     "--outliers", str(draw.choice([0, 0.005, 0.02]))]
@@ -97,11 +99,12 @@ def main():
     parser.add_argument("--count", type=int, default=96)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", default=",".join(SEEDLINGS + LARGE))
+    parser.add_argument("--points", type=float, nargs=2, default=POINTS)
     parser.add_argument("--least-exact", type=float, default=0)
     options = parser.parse_args()
     draw, rows = random.Random(options.seed), []
     for number in range(options.count):
-        scene = draw_scene(draw, number, options.kinds.split(","))
+        scene = draw_scene(draw, number, options.kinds.split(","), options.points)
         rows.append(score_scene(options.program, options.out, f"{number:03d}", 1000 * options.seed + number, scene))
     with open(os.path.join(options.out, "scenes.csv"), "w", newline="") as file:
         writer = csv.DictWriter(file, FIELDS)

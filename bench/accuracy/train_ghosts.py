@@ -15,6 +15,9 @@ import sys
 
 import numpy as np
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import boosting  # noqa: E402
+
 KINDS = "eggplant pepper okra cucumber soybean tomato maize arabidopsis".split()
 SCANS = {
     501: "--scanner rgbd --noise 0.5 --points 45000 --outliers 0.005",
@@ -36,7 +39,7 @@ FEATURES = 23
 POINTS = 12000  # of a plant, at most
 WEIGHT_OF_TUBES = 4
 SPACINGS_OF_PLANT, SPACINGS_OF_GHOST = (0.7, 4), (0.3, 8)  # least and most that weigh
-TREES, DEPTH, RATE, BINS, RIDGE = 64, 5, 0.3, 48, 20.0
+TREES = 64
 
 
 def make_plants(program, folder):
@@ -75,68 +78,8 @@ def gather(program, clouds):
     return np.concatenate(features), np.concatenate(ghost), np.concatenate(weight)
 
 
-def best_splits(binned, edges, node, gradient, hessian, leaves):
-    g_all, h_all = np.bincount(node, gradient, leaves), np.bincount(node, hessian, leaves)
-    gain, feature, place = np.full(leaves, 1e-6), np.zeros(leaves, int), np.full(leaves, 255)
-    for f, edge in enumerate(edges):
-        cell = node * 64 + binned[f]
-        g = np.bincount(cell, gradient, leaves * 64).reshape(leaves, 64).cumsum(1)
-        h = np.bincount(cell, hessian, leaves * 64).reshape(leaves, 64).cumsum(1)
-        won = (g ** 2 / (h + RIDGE) + (g_all[:, None] - g) ** 2 / (h_all[:, None] - h + RIDGE)
-               - (g_all ** 2 / (h_all + RIDGE))[:, None])
-        won[:, len(edge):] = 0
-        at = won.argmax(1)
-        top = won[np.arange(leaves), at]
-        better = top > gain
-        gain[better], feature[better], place[better] = top[better], f, at[better]
-    return feature, place
-
-
-def boost(x, y, w):
-    edges = [np.unique(np.quantile(x[::4, f], np.linspace(0, 1, BINS + 1)[1:-1]).astype(np.float32))
-             for f in range(x.shape[1])]
-    binned = np.stack([np.searchsorted(edges[f], x[:, f], side="left") for f in range(x.shape[1])]).astype(np.uint8)
-    bias = np.log((w * y).sum() / (w * (1 - y)).sum())
-    score, trees, row = np.full(len(y), bias), [], np.arange(len(y))
-    for _ in range(TREES):
-        p = 1 / (1 + np.exp(-score))
-        gradient, hessian = w * (p - y), w * p * (1 - p)
-        node, tree = np.zeros(len(y), int), []
-        for depth in range(DEPTH):
-            feature, place = best_splits(binned, edges, node, gradient, hessian, 1 << depth)
-            tree += [(int(f), float(edges[f][k]) if k < 255 else np.inf) for f, k in zip(feature, place)]
-            node = 2 * node + (binned[feature[node], row] > place[node])
-        g, h = np.bincount(node, gradient, 1 << DEPTH), np.bincount(node, hessian, 1 << DEPTH)
-        leaf = -RATE * g / (h + RIDGE)
-        score += leaf[node]
-        trees.append((tree, leaf))
-    return bias, trees
-
-
-def number(value):
-    if np.isinf(value):
-        return "INFINITY"
-    text = f"{np.float32(value):.6g}"
-    return text + ("F" if any(c in text for c in ".e") else ".0F")
-
-
-def write(bias, trees):
-    print("/* segment/ghost_forest.h: boosted trees of segment/ghosts.c; a feature above its threshold goes to the right."
-          "\n * Written by bench/accuracy/train_ghosts.py. Internal. */")
-    print("#ifndef PLANTIMETER_SEGMENT_GHOST_FOREST_H\n#define PLANTIMETER_SEGMENT_GHOST_FOREST_H\n")
-    print("#include <math.h>\n#include <stdint.h>\n")
-    print(f"enum {{ GHOST_NODES = {(1 << DEPTH) - 1} }};\n\nstatic const double GHOST_BIAS = {bias:.6g};")
-    print("/* clang-format off */\nstatic const struct {\n    uint8_t feature[GHOST_NODES];\n"
-          "    float threshold[GHOST_NODES];\n    float leaf[GHOST_NODES + 1];\n"
-          f"}} GHOST_TREE[{len(trees)}] = {{")
-    for tree, leaf in trees:
-        print("    {{" + ", ".join(str(f) for f, _ in tree) + "},")
-        print("     {" + ", ".join(number(t) for _, t in tree) + "},")
-        print("     {" + ", ".join(number(v) for v in leaf) + "}},")
-    print("};\n/* clang-format on */\n\n#endif")
-
-
 if __name__ == "__main__":
     if len(sys.argv) != 4:
         sys.exit(__doc__)
-    write(*boost(*gather(sys.argv[2], make_plants(sys.argv[1], sys.argv[3]))))
+    bias, trees = boosting.boost(*gather(sys.argv[2], make_plants(sys.argv[1], sys.argv[3])), TREES)
+    boosting.write(bias, trees, "GHOST", "segment/ghosts.c", "train_ghosts.py")
