@@ -20,6 +20,7 @@ static const attribute_row attributes[] = {
     {PLM_HAS_OPACITY, offsetof(plm_cloud, opacity), sizeof(float)},
     {PLM_HAS_LABEL, offsetof(plm_cloud, label), sizeof(uint8_t)},
     {PLM_HAS_ORGAN, offsetof(plm_cloud, organ), sizeof(int32_t)},
+    {PLM_HAS_LEAFLET, offsetof(plm_cloud, leaflet), sizeof(int32_t)},
     {PLM_HAS_SOURCE, offsetof(plm_cloud, source), sizeof(uint32_t)},
 };
 

@@ -128,7 +128,9 @@ typedef struct plm_cloud {
     float *opacity;     /**< of a splat: 0 to 1 */
     uint8_t *label;     /**< plm_label; only where the file was labelled */
     int32_t *organ;     /**< number of the organ within its class, -1 for none */
-    uint32_t *source;   /**< row of the input file that the point came from (0-based); NULL: row i is point i */
+    int32_t
+        *leaflet; /**< of leaf points of compound leaves: number within the leaf, else -1; only where it was measured */
+    uint32_t *source; /**< row of the input file that the point came from (0-based); NULL: row i is point i */
 } plm_cloud;
 
 /** An attribute to make room for in plm_cloud_create. */
@@ -139,7 +141,8 @@ typedef enum plm_attribute {
     PLM_HAS_OPACITY = 1 << 3,
     PLM_HAS_LABEL = 1 << 4,
     PLM_HAS_ORGAN = 1 << 5,
-    PLM_HAS_SOURCE = 1 << 6
+    PLM_HAS_SOURCE = 1 << 6,
+    PLM_HAS_LEAFLET = 1 << 7
 } plm_attribute;
 
 /** Makes a cloud of count points with xyz and the named attributes (a bit set of plm_attribute), not initialised,

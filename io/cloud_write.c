@@ -41,6 +41,7 @@ plm_out_layout plm_out_layout_of(const plm_cloud *cloud, bool is_pcd)
     if (cloud->opacity) add(&layout, "opacity", PLM_FLOAT32);
     if (cloud->label) add(&layout, "label", PLM_UINT8);
     if (cloud->organ) add(&layout, "organ", PLM_INT32);
+    if (cloud->leaflet) add(&layout, "leaflet", PLM_INT32);
     return layout;
 }
 
@@ -72,7 +73,8 @@ void plm_out_pack(const plm_out_layout *layout, const plm_cloud *cloud, size_t i
     if (cloud->extent) at = append(at, cloud->extent[i], sizeof cloud->extent[i]);
     if (cloud->opacity) at = append(at, &cloud->opacity[i], sizeof cloud->opacity[i]);
     if (cloud->label) at = append(at, &cloud->label[i], sizeof cloud->label[i]);
-    if (cloud->organ) append(at, &cloud->organ[i], sizeof cloud->organ[i]);
+    if (cloud->organ) at = append(at, &cloud->organ[i], sizeof cloud->organ[i]);
+    if (cloud->leaflet) append(at, &cloud->leaflet[i], sizeof cloud->leaflet[i]);
 }
 
 plm_status plm_out_rows(const plm_out_layout *layout, const plm_cloud *cloud, plm_output *output, plm_error *error)

@@ -21,6 +21,9 @@ plm_status plm_ply_write(const plm_cloud *cloud, plm_output *output, plm_error *
     if (status == PLM_OK && cloud->organ)
         status =
             plm_output_print(output, error, "comment organ is the number of the organ within its class, -1 for none\n");
+    if (status == PLM_OK && cloud->leaflet)
+        status = plm_output_print(
+            output, error, "comment leaflet is the number of the leaflet within its compound leaf, -1 for none\n");
     if (status == PLM_OK) status = plm_output_print(output, error, "element vertex %zu\n", cloud->count);
     for (size_t i = 0; status == PLM_OK && i < layout.count; i++)
         status =

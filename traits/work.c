@@ -89,7 +89,8 @@ static bool make_room(const plm_segmentation *found, plm_cloud *cloud, plm_segme
     made->leaflet = made->organ && found->leaflet ? plm_alloc(cloud->count, sizeof *made->leaflet, error) : NULL;
     if (!cloud->label && made->organ) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
     if (!cloud->organ && made->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
-    return made->organ && (made->leaflet || !found->leaflet) && cloud->label && cloud->organ;
+    if (made->leaflet && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
+    return made->organ && cloud->label && cloud->organ && (cloud->leaflet || !found->leaflet);
 }
 
 plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, plm_cloud *cloud, plm_segmentation *to,
@@ -124,7 +125,7 @@ plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, p
         }
         cloud->label[row] = made.label[row] = (uint8_t)label;
         cloud->organ[row] = made.organ[row] = organ;
-        if (made.leaflet) made.leaflet[row] = leaflet;
+        if (made.leaflet) cloud->leaflet[row] = made.leaflet[row] = leaflet;
     }
     plm_free(source);
     found->leaf_flags = NULL; /* moved with the struct */
@@ -136,8 +137,11 @@ plm_status plm_segmentation_to_cloud(const plm_segmentation *segmentation, plm_c
 {
     if (!cloud->label) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
     if (cloud->label && !cloud->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
-    if (!cloud->label || !cloud->organ) return PLM_E_MEMORY;
+    const bool has_leaflets = cloud->organ && segmentation->leaflet;
+    if (has_leaflets && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
+    if (!cloud->label || !cloud->organ || (has_leaflets && !cloud->leaflet)) return PLM_E_MEMORY;
     memcpy(cloud->label, segmentation->label, cloud->count * sizeof *cloud->label);
     memcpy(cloud->organ, segmentation->organ, cloud->count * sizeof *cloud->organ);
+    if (has_leaflets) memcpy(cloud->leaflet, segmentation->leaflet, cloud->count * sizeof *cloud->leaflet);
     return PLM_OK;
 }

@@ -25,7 +25,7 @@ plm_status plm_work_order(plm_work *work, plm_error *error);
 plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, plm_cloud *cloud, plm_segmentation *to,
                                 plm_error *error);
 
-/** Copies the labels and organs of a segmentation of the cloud's own rows into the cloud. */
+/** Copies the labels, organs and leaflets of a segmentation of the cloud's own rows into the cloud. */
 plm_status plm_segmentation_to_cloud(const plm_segmentation *segmentation, plm_cloud *cloud, plm_error *error);
 
 void plm_work_free(plm_work *work);

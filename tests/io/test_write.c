@@ -30,6 +30,7 @@ static plm_cloud make_cloud(unsigned attributes, const double origin[3])
         if (cloud.opacity) cloud.opacity[i] = (float)test_uniform(&state);
         if (cloud.label) cloud.label[i] = (uint8_t)(i % PLM_LABEL_COUNT);
         if (cloud.organ) cloud.organ[i] = i % 7 - 1;
+        if (cloud.leaflet) cloud.leaflet[i] = i % 5 - 1;
     }
     return cloud;
 }
@@ -113,6 +114,29 @@ static void labelled_ply_says_what_its_numbers_mean(void **unused)
     assert_ok(plm_cloud_write(path, &cloud, &error));
     assert_int_equal(read_file(path, file, sizeof file), sizeof expected - 1 + POINTS * 17);
     assert_memory_equal(file, expected, sizeof expected - 1);
+    plm_cloud_free(&cloud);
+    test_remove_folder(folder);
+}
+
+static void leaflets_are_written_behind_organs(void **unused)
+{
+    (void)unused;
+    static const char end[] = "comment leaflet is the number of the leaflet within its compound leaf, -1 for none\n"
+                              "element vertex 300\nproperty float x\nproperty float y\nproperty float z\n"
+                              "property uchar label\nproperty int organ\nproperty int leaflet\nend_header\n";
+    static char file[1 << 16];
+    char path[8192], *folder = test_make_folder();
+    plm_error error = {0};
+    plm_cloud cloud = make_cloud(PLM_HAS_LABEL | PLM_HAS_ORGAN | PLM_HAS_LEAFLET, (const double[3]){0, 0, 0});
+    snprintf(path, sizeof path, "%s/cloud.ply", folder);
+    assert_ok(plm_cloud_write(path, &cloud, &error));
+    const size_t row = 21, size = read_file(path, file, sizeof file), header = size - POINTS * row;
+    assert_true(size > POINTS * row + sizeof end);
+    assert_memory_equal(file + header - (sizeof end - 1), end, sizeof end - 1);
+    for (size_t i = 0; i < POINTS; i++) {
+        assert_memory_equal(file + header + i * row + 13, &cloud.organ[i], sizeof *cloud.organ);
+        assert_memory_equal(file + header + i * row + 17, &cloud.leaflet[i], sizeof *cloud.leaflet);
+    }
     plm_cloud_free(&cloud);
     test_remove_folder(folder);
 }
@@ -247,6 +271,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_brings_back_every_attribute_and_the_same_bytes),
         cmocka_unit_test(labelled_ply_says_what_its_numbers_mean),
+        cmocka_unit_test(leaflets_are_written_behind_organs),
         cmocka_unit_test(files_that_cannot_be_written_leave_nothing),
         cmocka_unit_test(digests_are_those_of_the_standard),
         cmocka_unit_test(meshes_are_written_with_all_their_triangles_and_organs),

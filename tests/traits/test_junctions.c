@@ -232,6 +232,9 @@ static void a_compound_leafs_petiole_is_measured_before_its_first_leaflet(void *
     for (size_t i = 0; i < count; i++) most = fmax(most, fabs(found[i] / built[i] - 1));
     print_message("petioles of a tomato: diameters within %.1f %%\n", 100 * most);
     assert_true(most < 0.03);
+    assert_non_null(measurement.cloud.leaflet); /* the labelled cloud says them, too */
+    assert_memory_equal(measurement.cloud.leaflet, measurement.segmentation.leaflet,
+                        measurement.cloud.count * sizeof *measurement.cloud.leaflet);
     plm_measurement_free(&measurement);
     plm_virtual_plant_free(&plant);
 }
