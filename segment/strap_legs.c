@@ -7,7 +7,9 @@
 
 #include <math.h>
 
-static const double LEG = 0.07;          /* length of a leg below the meeting, in sizes of the plant */
+static const double LEG = 0.07; /* length of a leg below the meeting, in sizes of the plant, ... */
+static const double LEG_OF_TIP =
+    0.03; /* ... and in a leaf that touches one without a foot, whose leg may be soon over */
 static const double LEAST_SHARE = 0.005; /* of the points that a leg holds at least */
 static const double CLEAR = 2;           /* nearer to the stem's line, in its radii, feet wrap the stem and touch */
 /* Two legs are two leaves if so long as this, their lower ends so far apart, both in sizes: else a leaf with a slit, ... */
@@ -43,13 +45,33 @@ static void find_ends(plm_strap_legs *l, size_t leaves)
 {
     const plm_sketch *s = l->sketch;
     for (size_t k = 0; k < leaves; k++) l->tip[k] = l->end[k] = UINT32_MAX;
-    for (size_t k = 0; k < l->legs; k++) l->low[k] = UINT32_MAX;
     for (uint32_t i = 0; i < s->working.count; i++) {
         if (!isfinite(l->upside[i])) continue;
         uint32_t *tip = &l->tip[s->leaf[i]], *end = &l->end[s->leaf[i]];
         if (*tip == UINT32_MAX || l->upside[i] < l->upside[*tip]) *tip = i;
         if (*end == UINT32_MAX || l->upside[i] > l->upside[*end]) *end = i;
-        if (l->leg[i] < 0) continue;
+    }
+}
+
+/* How long the legs of each point's leaf are at least. touches: a flag for each leaf. */
+static void find_reach(const plm_strap_legs *l, bool *touches, float *reach)
+{
+    const plm_sketch *s = l->sketch;
+    for (size_t i = 0; i < s->working.count; i++)
+        for (uint32_t e = s->graph.first[i]; s->leaf[i] >= 0 && e < s->graph.first[i + 1]; e++) {
+            const int32_t other = s->leaf[s->graph.edge[e]];
+            if (other >= 0 && other != s->leaf[i] && plm_strap_has_no_foot(l, (size_t)other))
+                touches[s->leaf[i]] = true;
+        }
+    for (size_t i = 0; i < s->working.count; i++)
+        reach[i] = (float)((s->leaf[i] >= 0 && touches[s->leaf[i]] ? LEG_OF_TIP : LEG) * s->scale.size);
+}
+
+static void find_lows(plm_strap_legs *l)
+{
+    for (size_t k = 0; k < l->legs; k++) l->low[k] = UINT32_MAX;
+    for (uint32_t i = 0; i < l->sketch->working.count; i++) {
+        if (!isfinite(l->upside[i]) || l->leg[i] < 0) continue;
         uint32_t *low = &l->low[l->leg[i]];
         if (*low == UINT32_MAX || l->upside[i] > l->upside[*low]) *low = i;
     }
@@ -84,6 +106,7 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
 {
     const size_t count = sketch->working.count;
     float *reach = plm_scratch_take(scratch, count, sizeof *reach);
+    bool *touches = plm_scratch_take(scratch, leaves + 1, sizeof *touches);
     float *value = plm_scratch_take(scratch, leaves + 1, sizeof *value);
     size_t *legs_of = plm_scratch_take(scratch, leaves + 1, sizeof *legs_of);
     *legs = (plm_strap_legs){.sketch = sketch,
@@ -92,8 +115,9 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
                              .tip = plm_scratch_take(scratch, leaves + 1, sizeof *legs->tip),
                              .end = plm_scratch_take(scratch, leaves + 1, sizeof *legs->end)};
     if (scratch->failed) return PLM_E_MEMORY;
-    for (size_t i = 0; i < count; i++) reach[i] = (float)(LEG * sketch->scale.size);
     start_from_feet(legs, from_base);
+    find_ends(legs, leaves);
+    find_reach(legs, touches, reach);
     const plm_merge_rule rule = {.distance = legs->upside,
                                  .reach = reach,
                                  .apart = sketch->leaf,
@@ -104,7 +128,7 @@ plm_status plm_strap_find_legs(const plm_sketch *sketch, const float *from_base,
     legs->length = plm_scratch_take(scratch, legs->legs + 1, sizeof *legs->length);
     legs->width = plm_scratch_take(scratch, legs->legs + 1, sizeof *legs->width);
     if (scratch->failed) return PLM_E_MEMORY;
-    find_ends(legs, leaves);
+    find_lows(legs);
     measure_legs(legs, leaves, value, legs_of);
     return PLM_OK;
 }

@@ -175,6 +175,18 @@ static void long_blades_at_the_stem_are_straps_in_little_noise(void **unused)
     }
 }
 
+/* Leaves that lie on each other about the stem are forked from it late, and the way up the stem ran on into one of them. */
+static void the_stem_goes_straight_on_where_its_way_turns_into_a_leaf(void **unused)
+{
+    (void)unused;
+    plm_habit habit;
+    const label_score score =
+        segmented_grown("maize", &(plm_plant_options){.seed = 57505, .is_arched = true},
+                        &(plm_scan_options){DEPTH_CAMERA, .seed = 57505, .outliers = 0.005}, &habit);
+    assert_int_equal(habit, PLM_HABIT_STRAP);
+    assert_true(score.iou[PLM_LABEL_STEM] > 0.6);
+}
+
 /* Two blades lie on each other between foot and tip: the tree had both tips, and gave one of them both feet. */
 static void blades_on_each_other_keep_their_middles(void **unused)
 {
@@ -203,6 +215,7 @@ int main(void)
                                        plant_case(blades_that_touch_for_long_are_two),
                                        plant_case(long_blades_at_the_stem_are_straps),
                                        plant_case(long_blades_at_the_stem_are_straps_in_little_noise),
+                                       plant_case(the_stem_goes_straight_on_where_its_way_turns_into_a_leaf),
                                        plant_case(blades_on_each_other_keep_their_middles)};
     return run_cases(tests);
 }
