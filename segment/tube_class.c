@@ -13,7 +13,7 @@ static const double BALL_CELLS = 6;
 static const double VALUE_FLOOR = 0.02; /* of the ball's radius: below, an eigenvalue is taken for none */
 enum {
     SCALE_OF_R = 3,
-    FEW = 12 /* points in a ball: fewer do not tell a radius */
+    FEW = 12 /* points in a ball: fewer do not tell its shape */
 };
 
 static void shape_features(const plm_ball_shape *shape, double radius, double noise, float feature[PLM_TUBE_FEATURES])
@@ -65,7 +65,8 @@ static void take_over(const plm_ball_shape *shape, const plm_thinned *copy, cons
     }
 }
 
-/* Where too few points are in a ball, its shape by links as far as sparse parts want; the graph keeps these. */
+/* Where too few points are in a ball, its shape by links as far as sparse parts want; the graph keeps these. The formula was fitted without
+ * such in balls smaller than R; points that it tells and that have some (dense plants with sparse parts) fare no worse by them. */
 static plm_status widen_few(plm_graph *graph, double radius, plm_ball_shape *shape, plm_error *error)
 {
     size_t few = 0;

@@ -98,5 +98,7 @@ int main(int count, char **path)
             return 1;
         }
     }
-    return 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return 0;
+    fprintf(stderr, "the table could not be written\n");
+    return 1;
 }

@@ -3,11 +3,11 @@
 
     train_tubes.py PLANTIMETER TUBE_TABLE FOLDER > segment/sparse_tube_forest.h
 
-PLANTIMETER makes the virtual plants (into FOLDER, kept): scenes as scenes.py draws them, and as many of few points.
-TUBE_TABLE (bench/) computes the features that the library computes. The same programs give the same file. Learnt are points
+PLANTIMETER makes the virtual plants (into FOLDER, kept, and taken again if they are there): scenes as scenes.py draws them, and as many of few points.
+TUBE_TABLE (bench/) computes the features that the library computes. The same programs and an empty FOLDER give the same file. Learnt are points
 with few others around; a plant weighs as much as it has of such, half for its tubes and half for its blades. Of the scenes
-every HELD_OUT-th is not learnt: how well its points are told (mean of the shares of tubes and of blades that are told right)
-is printed to standard error.
+every HELD_OUT-th is not learnt: how well its points with few others around are told (mean of the shares of tubes and of blades
+that are told right), where most of its points are such, is printed to standard error.
 """
 import os
 import random
@@ -53,6 +53,8 @@ def read_tables(program, cloud):
     raw = subprocess.run([program, cloud], check=True, stdout=subprocess.PIPE, env={**os.environ, "OMP_NUM_THREADS": "1"}).stdout
     count = int(np.frombuffer(raw, "<u4", 1)[0])
     block = np.dtype([("count", "<u4"), ("rows", "<f4", (count, LABEL + 1))])
+    if len(raw) != SIZES * block.itemsize:
+        raise ValueError(f"{cloud}: a table of {len(raw)} bytes, {SIZES * block.itemsize} were expected")
     return np.frombuffer(raw, block, SIZES)["rows"]
 
 

@@ -4,7 +4,7 @@
  *
  * For each cloud and each of three sizes of the balls, to standard output: the number of working points (uint32), then for each
  * the features of segment/tube_class.h, how many points its ball of R holds, and its label, all float32. Ground and what is
- * of no organ are left out, as if both had been told. */
+ * of no organ are left out: floaters and ghosts as if they had been told, fruit and tassels too. */
 #include "io/io.h"
 #include "segment/sketch.h"
 
@@ -90,5 +90,7 @@ int main(int count, char **path)
             return 1;
         }
     }
-    return 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return 0;
+    fprintf(stderr, "the table could not be written\n");
+    return 1;
 }
