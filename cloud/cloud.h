@@ -128,9 +128,8 @@ typedef struct plm_cloud {
     float *opacity;     /**< of a splat: 0 to 1 */
     uint8_t *label;     /**< plm_label; only where the file was labelled */
     int32_t *organ;     /**< number of the organ within its class, -1 for none */
-    int32_t
-        *leaflet; /**< of leaf points of compound leaves: number within the leaf, else -1; only where it was measured */
-    uint32_t *source; /**< row of the input file that the point came from (0-based); NULL: row i is point i */
+    int32_t *leaflet;   /**< of a compound plant's leaf points: number within the leaf, from 0; -1 for none */
+    uint32_t *source;   /**< row of the input file that the point came from (0-based); NULL: row i is point i */
 } plm_cloud;
 
 /** An attribute to make room for in plm_cloud_create. */

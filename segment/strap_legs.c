@@ -9,7 +9,7 @@
 
 static const double LEG = 0.07; /* length of a leg below the meeting, in sizes of the plant, ... */
 static const double LEG_OF_TIP =
-    0.03; /* ... and in a leaf that touches one without a foot, whose leg may be soon over */
+    0.03; /* ... and, of all legs of a leaf that touches one without a foot, so much: that one's may be soon over */
 static const double LEAST_SHARE = 0.005; /* of the points that a leg holds at least */
 static const double CLEAR = 2;           /* nearer to the stem's line, in its radii, feet wrap the stem and touch */
 /* Two legs are two leaves if so long as this, their lower ends so far apart, both in sizes: else a leaf with a slit, ... */

@@ -184,18 +184,22 @@ static size_t find_turn(const plm_stem_path *path)
 
 static plm_status go_straight(plm_strap_tube *t, rival *r, size_t fork, size_t most, plm_error *error)
 {
-    const size_t turn = find_turn(&t->path), old = t->path.count, cut = turn - TURN_ARM / 2;
+    const size_t turn = find_turn(&t->path), old = t->path.count;
     if (!turn) return PLM_OK;
+    const size_t cut = turn - TURN_ARM / 2;
     const double was = mean_closed(t, turn, old);
     bool is_better = false;
     swap(t, r);
     const plm_status status = make_path(&r->path, cut, most, &t->path, error);
     if (status == PLM_OK) {
         memcpy(t->closed, r->closed, cut * sizeof *t->closed);
-        plm_strap_tube_go_on(t, cut, fork, most);
+        plm_strap_tube_go_on(t, cut, cut > fork ? cut : fork, most);
         const size_t count = t->path.count;
         const double now = count > turn ? mean_closed(t, turn, count) : 0;
-        is_better = now >= was && now * (double)(count - turn) > STRAIGHT_LEAST * was * (double)(old - turn);
+        is_better =
+            count > turn && now >= was && now * (double)(count - turn) > STRAIGHT_LEAST * was * (double)(old - turn);
+        if (is_better)
+            memcpy(t->path.radius, r->path.radius, cut * sizeof *t->path.radius); /* feet are out of these already */
     }
     choose(t, r, is_better);
     return status;

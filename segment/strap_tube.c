@@ -29,8 +29,7 @@ enum {
     ABOUT = 8,  /* nodes to both sides for the radius */
     BACK = 12,  /* the tube is followed from so many nodes below the last fork: its foot has drawn the line aside */
     LEVER = 16, /* nodes for the direction where it is followed */
-    MISSED = 5, /* nodes without a tube that end it */
-    LEAST_POINTS = 8
+    MISSED = 5  /* nodes without a tube that end it */
 };
 
 static double low_radius(const plm_strap_tube *t, size_t from, size_t to)
@@ -94,7 +93,7 @@ void plm_strap_tube_find_near(plm_strap_tube *t, double radii)
     }
 }
 
-/* The circle about a place of the line. x: its centre across the line and its radius; false: too few points. */
+/* The circle about a place of the line: its centre, radius and share of the directions; false: too few points. */
 static bool fit_circle(const plm_strap_tube *t, const double at[3], const double along[3], double radius,
                        double centre[3], double *found, double *closed)
 {
@@ -209,7 +208,7 @@ static void cut_end(plm_strap_tube *t, size_t sure, size_t trunk)
         const double radius = middle_radius(t, n);
         bool is_stem = radius <= wide && (n < sure || t->closed[n] >= CLOSED);
         if (n >= trunk) is_stem = t->closed[n] >= CLOSED && radius <= WIDENED * least;
-        if (n < trunk || is_stem) least = fmin(least, n < trunk ? t->low[n] : radius);
+        if (n < sure || is_stem) least = fmin(least, n < trunk ? t->low[n] : radius);
         surplus += is_stem ? 1 : -1;
         if (surplus > most) most = surplus, end = n + 1;
     }

@@ -26,7 +26,7 @@ typedef struct plm_strap_tube {
 void plm_strap_tube_find(plm_strap_tube *tube, size_t fork, size_t most);
 
 /** Follows the tube on from its last node until it is none, and ends it where it is a stem no longer. Its first nodes are sure, up to trunk
- * it may widen (it holds feet) as long as it is closed, beyond not. Writes low, and the radii without feet. */
+ * (no fewer) it may widen, as it holds feet, as long as it is closed, beyond not. Writes low, and the radii without feet. */
 void plm_strap_tube_go_on(plm_strap_tube *tube, size_t sure, size_t trunk, size_t most);
 
 /** Finds the points in the line's box, widened by so many radii: most of the leaves are not. */

@@ -87,10 +87,14 @@ static bool make_room(const plm_segmentation *found, plm_cloud *cloud, plm_segme
     made->label = plm_alloc(cloud->count, sizeof *made->label, error);
     made->organ = made->label ? plm_alloc(cloud->count, sizeof *made->organ, error) : NULL;
     made->leaflet = made->organ && found->leaflet ? plm_alloc(cloud->count, sizeof *made->leaflet, error) : NULL;
+    if (!found->leaflet) {
+        plm_free(cloud->leaflet); /* of other leaves */
+        cloud->leaflet = NULL;
+    }
     if (!cloud->label && made->organ) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
     if (!cloud->organ && made->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
     if (made->leaflet && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
-    return made->organ && cloud->label && cloud->organ && (cloud->leaflet || !found->leaflet);
+    return made->organ && cloud->label && cloud->organ && (!found->leaflet || (made->leaflet && cloud->leaflet));
 }
 
 plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, plm_cloud *cloud, plm_segmentation *to,
@@ -138,6 +142,10 @@ plm_status plm_segmentation_to_cloud(const plm_segmentation *segmentation, plm_c
     if (!cloud->label) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
     if (cloud->label && !cloud->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
     const bool has_leaflets = cloud->organ && segmentation->leaflet;
+    if (!segmentation->leaflet) {
+        plm_free(cloud->leaflet); /* of other leaves */
+        cloud->leaflet = NULL;
+    }
     if (has_leaflets && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
     if (!cloud->label || !cloud->organ || (has_leaflets && !cloud->leaflet)) return PLM_E_MEMORY;
     memcpy(cloud->label, segmentation->label, cloud->count * sizeof *cloud->label);

@@ -56,11 +56,13 @@ def leaves_f1(true_leaf, found_leaf):
 
 
 def leaflets_of(found):
-    """Numbers of leaflets, -1 for what is none; a leaf without is one. None where there are no compound leaves."""
+    """Numbers of leaflets, -1 for what is none; a leaf that has none is one. None where there are no compound leaves."""
     if "leaflet" not in found.dtype.names:
         return None
-    part = np.clip(found["leaflet"].astype(int), 0, None)
-    return np.where(found["label"] == 3, found["organ"].astype(int) * (part.max() + 1) + part, -1)
+    organ, part = found["organ"].astype(int), found["leaflet"].astype(int)
+    parted = np.isin(organ, np.unique(organ[(found["label"] == 3) & (part >= 0)]))
+    number = organ * (part.max() + 1) + np.clip(part, 0, None)
+    return np.where((found["label"] == 3) & ((part >= 0) | ~parted), number, -1)
 
 
 def score(real, run):

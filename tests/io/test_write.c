@@ -137,6 +137,15 @@ static void leaflets_are_written_behind_organs(void **unused)
         assert_memory_equal(file + header + i * row + 13, &cloud.organ[i], sizeof *cloud.organ);
         assert_memory_equal(file + header + i * row + 17, &cloud.leaflet[i], sizeof *cloud.leaflet);
     }
+    static const char *const others[][2] = {{"pcd", "FIELDS x y z label organ leaflet\n"},
+                                            {"csv", "x,y,z,label,organ,leaflet\n"},
+                                            {"txt", "x y z label organ leaflet\n"}};
+    for (size_t k = 0; k < COUNT(others); k++) {
+        snprintf(path, sizeof path, "%s/cloud.%s", folder, others[k][0]);
+        assert_ok(plm_cloud_write(path, &cloud, &error));
+        file[read_file(path, file, sizeof file - 1)] = 0;
+        assert_non_null(strstr(file, others[k][1]));
+    }
     plm_cloud_free(&cloud);
     test_remove_folder(folder);
 }

@@ -27,11 +27,9 @@ static size_t add_point(drawing *d, double x, double y, double z, int32_t leaf)
     return i;
 }
 
-/* A stem, half of which a leaf has for its own, and that leaf; the rough path runs up on the stem's surface, with such a radius. */
-static void draw(drawing *d, double radius)
+static void start(drawing *d, double radius)
 {
     plm_sketch *s = &d->sketch;
-    uint64_t state = 11;
     memset(d, 0, sizeof *d);
     s->leaf = d->leaf;
     s->is_stem = d->is_stem;
@@ -39,6 +37,20 @@ static void draw(drawing *d, double radius)
     s->working.xyz = d->xyz;
     s->working.cell = 6e-4;
     s->scale = (plm_scale){.radius = 6e-3, .stem_radius = radius, .noise = 1e-4, .size = 0.3, .spacing = 6e-4};
+    s->stem.count = NODES;
+    s->stem.node = calloc(NODES, sizeof *s->stem.node);
+    s->stem.radius = calloc(NODES, sizeof *s->stem.radius);
+    s->stem.along = calloc(NODES, sizeof *s->stem.along);
+    assert_true(s->stem.node && s->stem.radius && s->stem.along);
+    for (size_t n = 0; n < NODES; n++) s->stem.radius[n] = radius;
+}
+
+/* A stem, half of which a leaf has for its own, and that leaf; the rough path runs up on the stem's surface, with such a radius. */
+static void draw(drawing *d, double radius)
+{
+    plm_sketch *s = &d->sketch;
+    uint64_t state = 11;
+    start(d, radius);
     for (size_t k = 0; k < 6000; k++) {
         const double way = 2 * PLM_PI * test_uniform(&state), z = HEIGHT * test_uniform(&state);
         const double r = RADIUS * (1 + 0.08 * cos(3 * way)) + 4e-4 * (test_uniform(&state) - 0.5);
@@ -48,18 +60,43 @@ static void draw(drawing *d, double radius)
         const double along = 0.15 * test_uniform(&state), side = 0.02 * (test_uniform(&state) - 0.5);
         add_point(d, 0.012 + along, side, 0.09 + 0.6 * along, 0);
     }
-    s->stem.count = NODES;
-    s->stem.node = calloc(NODES, sizeof *s->stem.node);
-    s->stem.radius = calloc(NODES, sizeof *s->stem.radius);
-    s->stem.along = calloc(NODES, sizeof *s->stem.along);
-    assert_true(s->stem.node && s->stem.radius && s->stem.along);
     for (size_t n = 0; n < NODES; n++) {
         s->stem.node[n][0] = -0.9 * RADIUS + 5e-4 * sin(0.7 * (double)n);
         s->stem.node[n][1] = 5e-4 * cos(0.4 * (double)n);
         s->stem.node[n][2] = STEP * (double)n;
-        s->stem.radius[n] = radius;
     }
     plm_stem_measure_along(&s->stem);
+}
+
+/* Half of the stem, from z on, leaning by so much towards x. */
+static void add_half(drawing *d, double z, double lean, int32_t leaf, uint64_t *state)
+{
+    for (size_t k = 0; k < 3000; k++) {
+        const double way = 2 * PLM_PI * test_uniform(state), along = HEIGHT / 2 * test_uniform(state);
+        const double r = RADIUS + 4e-4 * (test_uniform(state) - 0.5), out = r * cos(way);
+        add_point(d, along * sin(lean) + out * cos(lean), r * sin(way), z + along * cos(lean) - out * sin(lean), leaf);
+    }
+}
+
+static void add_blade(drawing *d, double x, double z, double lean, double length, size_t count, int32_t leaf,
+                      uint64_t *state)
+{
+    for (size_t k = 0; k < count; k++) {
+        const double along = length * test_uniform(state), side = 0.016 * (test_uniform(state) - 0.5);
+        add_point(d, x + along * sin(lean), side, z + along * cos(lean), leaf);
+    }
+}
+
+/* The rough path goes straight up to half of the stem, and then leans. */
+static void set_path(drawing *d, double lean)
+{
+    plm_stem_path *stem = &d->sketch.stem;
+    for (size_t n = 0; n < NODES; n++) {
+        const double s = STEP * (double)n, beyond = fmax(s - HEIGHT / 2, 0);
+        stem->node[n][0] = beyond * sin(lean);
+        stem->node[n][2] = fmin(s, HEIGHT / 2) + beyond * cos(lean);
+    }
+    plm_stem_measure_along(stem);
 }
 
 static void assert_is_tube(double radius)
@@ -96,11 +133,64 @@ static void a_stem_wider_than_the_leaves_curls_is_found(void **unused)
     assert_is_tube(1.2e-3);
 }
 
+/* Share of the points [first, end) that are stem. */
+static double share_stem(const drawing *d, size_t first, size_t end)
+{
+    size_t stem = 0;
+    for (size_t i = first; i < end; i++) stem += d->is_stem[i];
+    return (double)stem / (double)(end - first);
+}
+
+/* The upper half is a leaf's as yet, and of another one the lower part is taken for trunk: into that the rough path turns. */
+static void a_way_into_a_blade_gives_way_to_the_tube(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    plm_error error = {0};
+    double shape;
+    uint64_t state = 12;
+    start(&d, RADIUS);
+    add_half(&d, 0, 0, -1, &state);
+    add_half(&d, HEIGHT / 2, 0, 0, &state);
+    const size_t blade = d.sketch.working.count;
+    add_blade(&d, RADIUS, HEIGHT / 2, 0.5, 0.07, 2500, -1, &state);
+    const size_t end = d.sketch.working.count;
+    add_blade(&d, 0.03, HEIGHT, 0.6, 0.15, 8000, 0, &state);
+    set_path(&d, 0.5);
+    assert_ok(plm_strap_stem(&d.sketch, 1, &shape, &error));
+    const double upper = share_stem(&d, 3000, 6000), taken = share_stem(&d, blade, end);
+    print_message("stem: %.3f of its upper half, %.3f of the blade\n", upper, taken);
+    assert_true(upper > 0.9 && taken < 0.15);
+    plm_stem_path_free(&d.sketch.stem);
+}
+
+/* A stem that bends is the tube on its way; straight on there is none. */
+static void a_bent_stem_stays(void **unused)
+{
+    (void)unused;
+    static drawing d;
+    plm_error error = {0};
+    double shape;
+    uint64_t state = 13;
+    start(&d, RADIUS);
+    add_half(&d, 0, 0, -1, &state);
+    add_half(&d, HEIGHT / 2, 0.4, -1, &state);
+    add_blade(&d, -0.03, HEIGHT, -0.6, 0.15, 8000, 0, &state);
+    set_path(&d, 0.4);
+    assert_ok(plm_strap_stem(&d.sketch, 1, &shape, &error));
+    const double upper = share_stem(&d, 3000, 6000);
+    print_message("stem: %.3f of its upper half\n", upper);
+    assert_true(upper > 0.9);
+    plm_stem_path_free(&d.sketch.stem);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_radius_about_right_stays),
         cmocka_unit_test(a_stem_wider_than_the_leaves_curls_is_found),
+        cmocka_unit_test(a_way_into_a_blade_gives_way_to_the_tube),
+        cmocka_unit_test(a_bent_stem_stays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
