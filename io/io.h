@@ -74,8 +74,8 @@ PLM_API plm_status plm_cloud_parse(const void *data, size_t size, const char *na
 
 /** Writes a cloud with all its attributes; the format follows from the path's ending: .ply (binary little-endian),
  * .pcd (binary), .xyz .txt (blank-separated, header line behind `#`), .csv. Labels, organs and leaflets become the
- * fields `label`, `organ` and `leaflet`, and a PLY comment says what they mean; leaflets are not read again. Coordinates are origin + offset: float where that loses nothing
- * beyond 1e-7 of the cloud's size, double else. plm_cloud.source is not written: it numbers another file's rows.
+ * fields `label`, `organ` and `leaflet`, and a PLY comment says what they mean; leaflets are not read again. Coordinates
+ * are origin + offset: float where that loses nothing beyond 1e-7 of the cloud's size, double else. plm_cloud.source is not written: it numbers another file's rows.
  * PLM_E_WRITE, PLM_E_ARGUMENT (unknown ending). */
 PLM_API plm_status plm_cloud_write(const char *path, const plm_cloud *cloud, plm_error *error);
 

@@ -19,8 +19,8 @@ typedef struct plm_out_layout {
     bool is_pcd;
 } plm_out_layout;
 
-/** One attribute after the other: x y z, colour, normals, extents and opacity, label, organ, leaflet. is_pcd: by PCL's names, with
- * the colour packed into one number. */
+/** One attribute after the other: x y z, colour, normals, extents and opacity, label, organ, leaflet. is_pcd: by PCL's
+ * names, with the colour packed into one number. */
 plm_out_layout plm_out_layout_of(const plm_cloud *cloud, bool is_pcd);
 
 /** Packs point i into row, in this machine's byte order. */

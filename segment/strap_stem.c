@@ -166,7 +166,7 @@ static plm_status find_closed_tube(plm_strap_tube *t, rival *r, size_t fork, siz
     return status;
 }
 
-/* The node at which the path turns most; 0: it does not turn. */
+/* The node at which the path turns most; 0: it does not turn. Noise makes the way turn over more nodes than plm_stem_turn looks at. */
 static size_t find_turn(const plm_stem_path *path)
 {
     size_t best = 0;

@@ -14,8 +14,7 @@ enum { PLM_TUBE_SPARSE = 60 };
 /** What is known of the surroundings of one working point. */
 typedef struct plm_tube_point {
     float feature[PLM_TUBE_SCALES][PLM_TUBE_FEATURES]; /**< linearity, roundness, three sizes, offset, at 0.35 to 2 R */
-    uint32_t
-        count; /**< of points in the ball of R (widened where few are), at most one a voxel of R / 6 or of the spacing */
+    uint32_t count;  /**< of points in the ball of R, at most one a voxel of R / 6 or of the spacing */
     float radius;    /**< of the tube that the point would be on, at R */
     float axis[3];   /**< its direction */
     float normal[3]; /**< of the sheet that the point would be on */

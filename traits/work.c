@@ -81,20 +81,27 @@ static plm_status find_source(const plm_work *work, const plm_cloud *cloud, doub
     return PLM_OK;
 }
 
+/* Room in the cloud for the labels of a segmentation; leaflets that it lacks go, as they are of other leaves. */
+static bool make_label_room(const plm_segmentation *found, plm_cloud *cloud, plm_error *error)
+{
+    if (!cloud->label) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
+    if (cloud->label && !cloud->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
+    if (!found->leaflet) {
+        plm_free(cloud->leaflet);
+        cloud->leaflet = NULL;
+    } else if (cloud->organ && !cloud->leaflet) {
+        cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
+    }
+    return cloud->label && cloud->organ && (cloud->leaflet || !found->leaflet);
+}
+
 static bool make_room(const plm_segmentation *found, plm_cloud *cloud, plm_segmentation *made, plm_error *error)
 {
     made->count = cloud->count;
     made->label = plm_alloc(cloud->count, sizeof *made->label, error);
     made->organ = made->label ? plm_alloc(cloud->count, sizeof *made->organ, error) : NULL;
     made->leaflet = made->organ && found->leaflet ? plm_alloc(cloud->count, sizeof *made->leaflet, error) : NULL;
-    if (!found->leaflet) {
-        plm_free(cloud->leaflet); /* of other leaves */
-        cloud->leaflet = NULL;
-    }
-    if (!cloud->label && made->organ) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
-    if (!cloud->organ && made->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
-    if (made->leaflet && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
-    return made->organ && cloud->label && cloud->organ && (!found->leaflet || (made->leaflet && cloud->leaflet));
+    return made->organ && (made->leaflet || !found->leaflet) && make_label_room(found, cloud, error);
 }
 
 plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, plm_cloud *cloud, plm_segmentation *to,
@@ -139,17 +146,9 @@ plm_status plm_work_give_labels(const plm_work *work, plm_segmentation *found, p
 
 plm_status plm_segmentation_to_cloud(const plm_segmentation *segmentation, plm_cloud *cloud, plm_error *error)
 {
-    if (!cloud->label) cloud->label = plm_alloc(cloud->count, sizeof *cloud->label, error);
-    if (cloud->label && !cloud->organ) cloud->organ = plm_alloc(cloud->count, sizeof *cloud->organ, error);
-    const bool has_leaflets = cloud->organ && segmentation->leaflet;
-    if (!segmentation->leaflet) {
-        plm_free(cloud->leaflet); /* of other leaves */
-        cloud->leaflet = NULL;
-    }
-    if (has_leaflets && !cloud->leaflet) cloud->leaflet = plm_alloc(cloud->count, sizeof *cloud->leaflet, error);
-    if (!cloud->label || !cloud->organ || (has_leaflets && !cloud->leaflet)) return PLM_E_MEMORY;
+    if (!make_label_room(segmentation, cloud, error)) return PLM_E_MEMORY;
     memcpy(cloud->label, segmentation->label, cloud->count * sizeof *cloud->label);
     memcpy(cloud->organ, segmentation->organ, cloud->count * sizeof *cloud->organ);
-    if (has_leaflets) memcpy(cloud->leaflet, segmentation->leaflet, cloud->count * sizeof *cloud->leaflet);
+    if (cloud->leaflet) memcpy(cloud->leaflet, segmentation->leaflet, cloud->count * sizeof *cloud->leaflet);
     return PLM_OK;
 }

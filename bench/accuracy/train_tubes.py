@@ -3,9 +3,10 @@
 
     train_tubes.py PLANTIMETER TUBE_TABLE FOLDER > segment/sparse_tube_forest.h
 
-PLANTIMETER makes the virtual plants (into FOLDER, kept, and taken again if they are there): scenes as scenes.py draws them, and as many of few points.
-TUBE_TABLE (bench/) computes the features that the library computes. The same programs and an empty FOLDER give the same file. Learnt are points
-with few others around; a plant weighs as much as it has of such, half for its tubes and half for its blades. Of the scenes
+PLANTIMETER makes the virtual plants (into FOLDER, kept, and taken again if they are there): scenes as scenes.py draws
+them, and as many of few points. TUBE_TABLE (bench/) computes the features that the library computes. The same programs and
+an empty FOLDER give the same file. Learnt are points with few others around; a plant weighs as much as it has of such, half
+for its tubes and half for its blades. Of the scenes
 every HELD_OUT-th is not learnt: how well its points with few others around are told (mean of the shares of tubes and of blades
 that are told right), where most of its points are such, is printed to standard error.
 """

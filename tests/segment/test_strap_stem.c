@@ -68,11 +68,11 @@ static void draw(drawing *d, double radius)
     plm_stem_measure_along(&s->stem);
 }
 
-/* Half of the stem, from z on, leaning by so much towards x. */
-static void add_half(drawing *d, double z, double lean, int32_t leaf, uint64_t *state)
+/* So much of the stem, from z on, leaning by so much towards x. */
+static void add_tube(drawing *d, double z, double length, double lean, size_t count, int32_t leaf, uint64_t *state)
 {
-    for (size_t k = 0; k < 3000; k++) {
-        const double way = 2 * PLM_PI * test_uniform(state), along = HEIGHT / 2 * test_uniform(state);
+    for (size_t k = 0; k < count; k++) {
+        const double way = 2 * PLM_PI * test_uniform(state), along = length * test_uniform(state);
         const double r = RADIUS + 4e-4 * (test_uniform(state) - 0.5), out = r * cos(way);
         add_point(d, along * sin(lean) + out * cos(lean), r * sin(way), z + along * cos(lean) - out * sin(lean), leaf);
     }
@@ -141,6 +141,15 @@ static double share_stem(const drawing *d, size_t first, size_t end)
     return (double)stem / (double)(end - first);
 }
 
+/* The lower half of a stem is drawn, and a leaf; the rough path leans beyond the half. */
+static void start_halves(drawing *d, double lean, double leaf_x, double leaf_lean, uint64_t *state)
+{
+    start(d, RADIUS);
+    add_tube(d, 0, HEIGHT / 2, 0, 3000, -1, state);
+    add_blade(d, leaf_x, HEIGHT, leaf_lean, 0.15, 8000, 0, state);
+    set_path(d, lean);
+}
+
 /* The upper half is a leaf's as yet, and of another one the lower part is taken for trunk: into that the rough path turns. */
 static void a_way_into_a_blade_gives_way_to_the_tube(void **unused)
 {
@@ -149,22 +158,19 @@ static void a_way_into_a_blade_gives_way_to_the_tube(void **unused)
     plm_error error = {0};
     double shape;
     uint64_t state = 12;
-    start(&d, RADIUS);
-    add_half(&d, 0, 0, -1, &state);
-    add_half(&d, HEIGHT / 2, 0, 0, &state);
+    start_halves(&d, 0.5, 0.03, 0.6, &state);
+    const size_t upper = d.sketch.working.count;
+    add_tube(&d, HEIGHT / 2, HEIGHT / 2, 0, 3000, 0, &state);
     const size_t blade = d.sketch.working.count;
     add_blade(&d, RADIUS, HEIGHT / 2, 0.5, 0.07, 2500, -1, &state);
-    const size_t end = d.sketch.working.count;
-    add_blade(&d, 0.03, HEIGHT, 0.6, 0.15, 8000, 0, &state);
-    set_path(&d, 0.5);
     assert_ok(plm_strap_stem(&d.sketch, 1, &shape, &error));
-    const double upper = share_stem(&d, 3000, 6000), taken = share_stem(&d, blade, end);
-    print_message("stem: %.3f of its upper half, %.3f of the blade\n", upper, taken);
-    assert_true(upper > 0.9 && taken < 0.15);
+    const double found = share_stem(&d, upper, blade), taken = share_stem(&d, blade, d.sketch.working.count);
+    print_message("stem: %.3f of its upper half, %.3f of the blade\n", found, taken);
+    assert_true(found > 0.9 && taken < 0.15);
     plm_stem_path_free(&d.sketch.stem);
 }
 
-/* A stem that bends is the tube on its way; straight on there is none. */
+/* A stem that bends is the tube on its way. Straight on there is a tube as closed, but short: the foot of a leaf. */
 static void a_bent_stem_stays(void **unused)
 {
     (void)unused;
@@ -172,15 +178,14 @@ static void a_bent_stem_stays(void **unused)
     plm_error error = {0};
     double shape;
     uint64_t state = 13;
-    start(&d, RADIUS);
-    add_half(&d, 0, 0, -1, &state);
-    add_half(&d, HEIGHT / 2, 0.4, -1, &state);
-    add_blade(&d, -0.03, HEIGHT, -0.6, 0.15, 8000, 0, &state);
-    set_path(&d, 0.4);
+    start_halves(&d, 0.6, -0.03, -0.6, &state);
+    add_tube(&d, HEIGHT / 2, 0.018, 0, 900, 0, &state);
+    const size_t upper = d.sketch.working.count;
+    add_tube(&d, HEIGHT / 2, HEIGHT / 2, 0.6, 3000, -1, &state);
     assert_ok(plm_strap_stem(&d.sketch, 1, &shape, &error));
-    const double upper = share_stem(&d, 3000, 6000);
-    print_message("stem: %.3f of its upper half\n", upper);
-    assert_true(upper > 0.9);
+    const double found = share_stem(&d, upper, d.sketch.working.count);
+    print_message("stem: %.3f of its upper half\n", found);
+    assert_true(found > 0.8);
     plm_stem_path_free(&d.sketch.stem);
 }
 

@@ -31,7 +31,6 @@ static double told_right(const char *kind, uint64_t seed, double noise, double *
         all[tube]++;
         sparse += point->count < PLM_TUBE_SPARSE;
     }
-
     plm_sketch_free(&sketch);
     virtual_plant_free(&made);
     sparse /= all[0] + all[1];
